@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use egui::{Pos2, Rect, Shape, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use shapematch::app::{Action, BottomTab, Command, NoticeCommand, Theme, ViewCommand};
+use shapematch::app::{Action, BottomTab, Command, MoveCommand, NoticeCommand, Theme, ViewCommand};
 use shapematch::geometry::camera::ScreenSize;
 use shapematch::role::Role;
 use shapematch::text::capital;
@@ -617,6 +617,40 @@ fn covers_nothing(window: &Window, what: &str, role: Role) {
     let fills = (bounds.width() / area.width()).max(bounds.height() / area.height());
     let least = if area.height() < 300.0 { 0.35 } else { 0.55 };
     assert!(fills > least, "{what}: {bounds} {area}");
+}
+
+/// That a deviation is out of date is said where it moves neither the fields nor the bar.
+#[test]
+fn the_legend_stays_in_place_while_the_deviation_is_measured_again() {
+    let mut window = matched();
+    click(&mut window, "Move over");
+    finish(&mut window);
+    wait_for(&mut window, "Unfold the legend (stamped)");
+    click(&mut window, "Unfold the legend (stamped)");
+    window.run_steps(4);
+    let role = egui::accesskit::Role::SpinButton;
+    let field = |window: &Window| {
+        let field = window.get_by_role_and_label(role, "Upper limit (stamped)");
+        field.rect().top()
+    };
+    let at = field(&window);
+    assert!(window.query_by_label("up to date").is_some());
+    let mut crash_from_stamped = *window.state().state().document.crash_from_stamped();
+    crash_from_stamped.translation.x += 1.0;
+    let name = "by hand".to_owned();
+    let moved = MoveCommand::SetPose {
+        crash_from_stamped,
+        name,
+    };
+    let ctx = window.ctx.clone();
+    window.state_mut().run_commands(vec![moved.into()], &ctx);
+    // While it is measured and after it.
+    window.run_steps(1);
+    assert_eq!(field(&window), at);
+    finish(&mut window);
+    window.run_steps(4);
+    assert_eq!(field(&window), at);
+    assert!(window.query_by_label("up to date").is_some());
 }
 
 #[test]

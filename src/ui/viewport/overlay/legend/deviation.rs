@@ -68,10 +68,18 @@ pub(super) fn show(
     }
 }
 
-/// Says on the folded legend that its colours are old, with the way to new ones.
+/// Above the bar of the folded legend: whose colours they are, and faint if they are old.
+pub(super) fn slim_head(ui: &mut Ui, over: &Overlay<'_>) {
+    drawn_on(ui, over, "reduced part");
+    if over.frame.state.freshness() != Freshness::Current {
+        ui.set_opacity(0.45);
+    }
+}
+
+/// Says at the foot of the folded legend that its colours are old, with the way to new ones: the bar stays where
+/// it is.
 pub(super) fn slim_freshness(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
     let state = over.frame.state;
-    drawn_on(ui, over, "reduced part");
     let freshness = state.freshness();
     if freshness == Freshness::Current {
         return;
@@ -85,7 +93,6 @@ pub(super) fn slim_freshness(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec
             commands.push(InspectCommand::Update.into());
         }
     }
-    ui.set_opacity(0.45);
 }
 
 /// Before the first measurement has ended.
@@ -150,10 +157,10 @@ fn title(ui: &mut Ui, over: &Overlay<'_>, role: Role, commands: &mut Vec<Command
     });
 }
 
-/// Says when the numbers are not those of what is shown.
+/// Whether the numbers are those of what is shown: always a row, so that what is below stays where it is.
 pub(super) fn freshness(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
     let text = match over.frame.state.freshness() {
-        Freshness::Current => return,
+        Freshness::Current => "up to date",
         Freshness::Missing if over.frame.state.jobs.locking_job().is_some() => {
             "measured after the run"
         }
@@ -161,9 +168,12 @@ pub(super) fn freshness(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Comm
         Freshness::Updating => "out of date · measuring",
         Freshness::OutOfDate => "out of date",
     };
-    let palette = Palette::of(ui);
+    let color = match over.frame.state.freshness() {
+        Freshness::Current => over.frame.look.weak,
+        _ => Palette::of(ui).check,
+    };
     ui.horizontal(|ui| {
-        ui.label(RichText::new(text).size(11.5).color(palette.check));
+        ui.label(RichText::new(text).size(11.5).color(color));
         let is_open = matches!(
             over.frame.state.freshness(),
             Freshness::Missing | Freshness::OutOfDate

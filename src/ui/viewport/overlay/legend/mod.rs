@@ -88,7 +88,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
         bar: if window.height() >= FULL_HEIGHT {
             176.0
         } else {
-            (window.height() - 170.0).clamp(70.0, 150.0)
+            (window.height() - 190.0).clamp(70.0, 150.0)
         },
     };
     Some(plate(ui, over, WIDTH, |ui| match kind {
@@ -241,24 +241,26 @@ fn slim(
         let unit = RichText::new(unit).size(11.0);
         ui.label(unit.color(over.frame.look.weak));
     }
+    let opacity = ui.opacity();
     if kind == FieldKind::Deviation {
-        deviation::slim_freshness(ui, over, commands);
+        deviation::slim_head(ui, over);
     }
     if over.is_equal() {
         bar::equal(ui, scale, over);
-        if can_open {
-            fold(ui, over);
-        }
-        return;
+    } else {
+        let left = over.frame.rect().height() - top(over).unwrap_or(ABOVE) - BELOW - 84.0;
+        let height = left.clamp(60.0, 220.0);
+        let (room, _) = ui.allocate_exact_size(vec2(SLIM, height + 16.0), Sense::hover());
+        let bar = Rect::from_min_size(room.min + vec2(1.0, 8.0), vec2(bar::BAR, height));
+        bar::paint(ui.painter(), scale, bar, over);
+        bar::ticks(ui.painter(), scale, bar, over, false);
     }
-    let left = over.frame.rect().height() - top(over).unwrap_or(ABOVE) - BELOW - 84.0;
-    let height = left.clamp(60.0, 220.0);
-    let (room, _) = ui.allocate_exact_size(vec2(SLIM, height + 16.0), Sense::hover());
-    let bar = Rect::from_min_size(room.min + vec2(1.0, 8.0), vec2(bar::BAR, height));
-    bar::paint(ui.painter(), scale, bar, over);
-    bar::ticks(ui.painter(), scale, bar, over, false);
+    ui.set_opacity(opacity);
     if can_open {
         fold(ui, over);
+    }
+    if kind == FieldKind::Deviation {
+        deviation::slim_freshness(ui, over, commands);
     }
 }
 
