@@ -274,9 +274,9 @@ pub enum Dialog {
 pub enum ColumnRoom {
     /// For both.
     Enough,
-    /// For both only in a pinch: the column is a rail until it is asked for.
+    /// Little is left beside it: the column is a rail until it is asked for.
     Narrow,
-    /// For one of them. A column that was unfolded with more room is a rail again.
+    /// Still less. A column that was unfolded with more room is a rail again.
     Tiny,
 }
 
