@@ -387,7 +387,7 @@ fn read_errors(in_source: u64, in_target: u64) -> String {
     let files = [(in_source, "stamped"), (in_target, "crash")];
     let files: Vec<String> = files.into_iter().filter_map(of).collect();
     format!(
-        "{}: nodes or elements may be missing or lie elsewhere",
+        "{}: nodes or elements may be missing or misplaced",
         files.join(" and ")
     )
 }

@@ -42,7 +42,7 @@ pub fn missing_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         commands.push(ViewCommand::SetDialog(None).into());
         return;
     };
-    ui.heading("Files of the project are not found");
+    ui.heading("Project files not found");
     paragraph(ui, request.path.display().to_string());
     for (file, path) in missing {
         ui.add_space(UNIT);
@@ -52,8 +52,8 @@ pub fn missing_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         });
         ui.horizontal(|ui| {
             let what = file.words();
-            if plain(ui, "Find it…")
-                .accessible_name(format!("Find {what}"))
+            if plain(ui, "Locate…")
+                .accessible_name(format!("Locate {what}"))
                 .clicked()
             {
                 commands.push(ProjectCommand::AskLocate(*file).into());
@@ -71,8 +71,8 @@ pub fn missing_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     refusal(ui, state.project.refused.clone());
     paragraph(
         ui,
-        "They were looked for where the project says, and beside the project. Find one, and the others are looked \
-         for beside it.",
+        "They are neither where the project has them nor beside it. Locate one, and the others are searched for \
+         next to it.",
     );
     // In a row as the other answers are, which has the words in the middle of the buttons.
     ui.horizontal(|ui| {

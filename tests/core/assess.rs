@@ -286,7 +286,7 @@ fn what_could_not_be_read_is_at_most_check_and_changes_nothing_else() {
     assert_eq!(in_part.shape, whole.shape);
     assert_eq!(
         reason.words(Lengths::new(None)),
-        "2 read errors in the stamped file: nodes or elements may be missing or lie elsewhere"
+        "2 read errors in the stamped file: nodes or elements may be missing or misplaced"
     );
 }
 

@@ -99,7 +99,7 @@ fn errors_of_the_reader_lead_to_the_diagnostics() {
     let causes = window.state.causes();
     let cause = causes
         .into_iter()
-        .find(|cause| cause.title == "Files with errors")
+        .find(|cause| cause.title == "Read errors")
         .unwrap();
     assert!(
         cause.evidence.starts_with("1 read error in the crash file"),

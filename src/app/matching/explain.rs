@@ -121,7 +121,9 @@ impl AppState {
     ) -> Option<(String, Vec<Command>)> {
         let mut recipe = self.document.recipe.clone();
         change(&mut recipe);
-        if recipe == self.document.recipe || self.can_match().is_err() {
+        let can_match =
+            self.can_match().is_ok() && self.document.has_start_pose_of(&recipe).is_ok();
+        if recipe == self.document.recipe || !can_match {
             return None;
         }
         let commands = vec![
@@ -300,7 +302,7 @@ impl AppState {
         let reason = assessment.reasons.iter().find(is_one)?;
         let tab = ViewCommand::SetTab(BottomTab::Diagnostics);
         Some(Cause {
-            title: "Files with errors".to_owned(),
+            title: "Read errors".to_owned(),
             evidence: sentence(&reason.words(self.lengths())),
             remedy: Some(("Show diagnostics".to_owned(), vec![tab.into()])),
         })

@@ -150,7 +150,12 @@ impl Document {
 
     /// `Ok` unless the match begins with pairs that are not there.
     pub(in crate::app) fn has_start_pose(&self) -> Result<(), Reason> {
-        let method = self.recipe.settings.starts.method;
+        self.has_start_pose_of(&self.recipe)
+    }
+
+    /// The same of a match with this recipe.
+    pub(in crate::app) fn has_start_pose_of(&self, recipe: &MatchRecipe) -> Result<(), Reason> {
+        let method = recipe.settings.starts.method;
         let has = method != StartMethod::GivenPoses || self.pair_fit().is_ok();
         has.then_some(()).ok_or(Reason(
             "Pick three pairs of points first, or choose another start.",

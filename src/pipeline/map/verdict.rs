@@ -241,7 +241,7 @@ fn read_errors(run: &MapRun) -> Option<CheckRecord> {
     let n = usize::try_from(run.n_read_errors).unwrap_or(usize::MAX);
     (n > 0).then(|| CheckRecord {
         name: "Read errors".to_owned(),
-        found: format!("{n} in nodes, elements and transformations"),
+        found: format!("{n} in nodes, elements or transformations"),
         limit: "none".to_owned(),
         is_met: Some(false),
         reason: None,

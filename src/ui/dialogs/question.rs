@@ -94,9 +94,9 @@ pub(super) fn titles(question: &Question) -> (&'static str, &'static str) {
     match question {
         Question::OpenProject => ("Open a project", "Open"),
         Question::Locate(file) => match file {
-            ProjectFile::Part(Role::Crash) => ("Find the crash model of the project", "Use"),
-            ProjectFile::Part(Role::Stamped) => ("Find the stamped part of the project", "Use"),
-            ProjectFile::Further(_) => ("Find the further stamped file of the project", "Use"),
+            ProjectFile::Part(Role::Crash) => ("Locate the crash model of the project", "Use"),
+            ProjectFile::Part(Role::Stamped) => ("Locate the stamped part of the project", "Use"),
+            ProjectFile::Further(_) => ("Locate the further stamped file of the project", "Use"),
         },
         Question::Further => ("Add a stamped file", "Add"),
         Question::SaveProject(_) => ("Save the project", "Save"),
