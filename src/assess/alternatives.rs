@@ -11,6 +11,7 @@ use super::candidate::{
 };
 use super::contact::MAX_NODES;
 use super::held::{HeldPose, distinct, free_limit};
+use super::holes;
 use super::settle::{Least, Settling};
 use super::shape::OVERHANGS;
 use super::sliding::weak_motion;
@@ -18,9 +19,7 @@ use super::statements::statements;
 use super::tolerance::{AssessSettings, Distances, is_source_smaller};
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
-use crate::registration::{
-    Alternative, Extent, MatchOutcome, Surface, WideSearch, is_piece, same_pose,
-};
+use crate::registration::{Alternative, Extent, MatchOutcome, Surface, is_piece, same_pose};
 
 /// A pose with more differences of the shapes counts as at least so many times as bad as the result.
 const MORE_DIFFERENCES: f64 = 1.5;
@@ -174,36 +173,25 @@ pub fn placed_by_holes(
     monitor: &Monitor,
 ) -> Result<Option<HeldPose>, Cancelled> {
     let found = &outcome.target_from_source;
-    let is_source_smaller = is_source_smaller(source, target, 1.0);
-    let [data, model] = if is_source_smaller {
-        [source, target]
-    } else {
-        [target, source]
-    };
-    let has_holes = |part: &Surface| part.borders().iter().any(|border| border.is_hole);
-    let is_rigid = !found.is_mirrored() && found.scale == 1.0;
-    if !(outcome.rivals_sought && is_rigid && has_holes(data) && has_holes(model)) {
+    if !outcome.rivals_sought || !holes::can_place(source, target, found) {
         return Ok(None);
     }
-    let is_piece = is_piece(data, model);
+    let is_piece = if is_source_smaller(source, target, 1.0) {
+        is_piece(source, target)
+    } else {
+        is_piece(target, source)
+    };
     let is_open = |result: &Candidate| is_piece && result.differs() || result.n_alone > 0;
     let shape = statements(source, target, found, settings).shape;
-    let is_asked = is_open(&Candidate::at(*found, &shape, None));
-    let search = is_asked.then(|| WideSearch::new(data, model));
-    let Some(search) = search.flatten() else {
+    if !is_open(&Candidate::at(*found, &shape, None)) {
         return Ok(None);
-    };
+    }
     let settling = Settling::new([source, target], 1.0, settings, MAX_NODES);
-    let settle = |model_from_data: &Similarity| {
+    let settle = |pose: &Similarity| {
         monitor.check()?;
-        let pose = if is_source_smaller {
-            *model_from_data
-        } else {
-            model_from_data.inverse()
-        };
-        Ok(settling.settled(&pose, Least::Any).unwrap_or(pose))
+        Ok(settling.settled(pose, Least::Any).unwrap_or(*pose))
     };
-    let on_holes = search.on_holes(monitor)?;
+    let on_holes = holes::poses(source, target, monitor)?;
     let settled: Result<Vec<Similarity>, Cancelled> = on_holes.par_iter().map(settle).collect();
     let poses: Vec<Similarity> = [*found].into_iter().chain(settled?).collect();
     let mut better = judged(&poses, |pose, shape_at| {

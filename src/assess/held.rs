@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::borders::{BorderComparison, Borders, HolePair, PairKind};
 use super::contact::{ContactSearch, FEW_NODES, MAX_NODES};
 use super::coverage::overlap_limit;
+use super::holes;
 use super::settle::{Least, Settling};
 use super::shape::OVERHANGS;
 use super::slide::slid;
@@ -118,6 +119,10 @@ pub fn held_by_borders(
     for (root, free) in &roots {
         monitor.check()?;
         poses.extend(slid(source, target, root, free, MOST_SLID));
+    }
+    // A hole may be smaller than the search along the motion can tell.
+    if outcome.rivals_sought && holes::can_place(source, target, found) {
+        poses.extend(holes::poses(source, target, monitor)?);
     }
     poses.extend(&others);
     let by_borders = pair.by_borders(&poses, monitor)?;

@@ -3,7 +3,7 @@
 //! From the bottom up: `tolerance` says how far parts may differ; `contact` and `borders` find where two parts meet
 //! under a pose, `evidence` joins what they found, `fit` splits the gaps into a motion, an offset and bends; `trims`,
 //! `aside`, `stretch` and `shape` say how the parts differ, `uncertainty` how far the pose may be off. With these,
-//! `settle`, `slide`, `all_pairs`, `held`, `candidate`, `alternatives`, `unbent` and `skin` improve or choose a pose before it is
+//! `settle`, `slide`, `all_pairs`, `held`, `holes`, `candidate`, `alternatives`, `unbent` and `skin` improve or choose a pose before it is
 //! assessed, and `decide` makes the verdict of an [`Assessment`].
 
 mod all_pairs;
@@ -21,6 +21,7 @@ pub mod deviation;
 mod evidence;
 mod fit;
 mod held;
+mod holes;
 mod pose;
 mod reason;
 mod scaled;

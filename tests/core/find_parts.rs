@@ -93,7 +93,7 @@ $#  tranid
        900
 *DEFINE_TRANSFORMATION
        900
-TRANSL         3000.0       0.0       0.0
+TRANSL        3000.0       0.0       0.0
 *END
 ";
 

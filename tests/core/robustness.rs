@@ -145,11 +145,12 @@ fn holes_place_a_part_before_its_last_trim() {
         fender.node_error.is_some_and(|error| error < 0.2),
         "{fender:?}"
     );
-    // Half of the holes are not punched yet, and those that are fit after half a turn as well.
+    // Half of the holes are not punched yet, and those that are fit after half a turn nearly as well.
     for seed in [91, 94, 95] {
         let channel = run(seed, SamplePart::Channel, Scenario::Addendum);
         assert_eq!(channel.verdict, Verdict::Check, "{channel:?}");
-        assert_eq!(channel.pose, Some(PoseKind::Ambiguous), "{channel:?}");
+        let is_told = channel.pose == Some(PoseKind::Ambiguous);
+        assert!(channel.ending == Ending::Right || is_told, "{channel:?}");
     }
 }
 

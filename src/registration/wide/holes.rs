@@ -37,6 +37,8 @@ const LEAST_ACROSS: f64 = 0.5;
 const N_TURNS: usize = 36;
 /// Where less than this share of the most holes have a counterpart, others lie closer to where the part belongs.
 const NEARLY_MOST: f64 = 0.85;
+/// Unless so many poses have more.
+const LEAST_FIRST: usize = 24;
 /// First poses at most: of a plate with hundreds of like holes they say nothing.
 const MOST_FIRST: usize = 10_000;
 
@@ -88,13 +90,14 @@ impl Holes {
         }
         let counted = found.par_iter().map(|first| self.laid(&first.motion).0);
         let counts: Vec<usize> = counted.collect();
-        let most = counts.iter().max().copied().unwrap_or(0) as f64;
+        let mut sorted = counts.clone();
+        sorted.sort_unstable_by(|a, b| b.cmp(a));
+        // Surfaces do not tell the places of a regular pattern apart: those that most holes speak for come alone.
+        let of_these = sorted.get(LEAST_FIRST).or(sorted.last()).copied();
+        let nearly = NEARLY_MOST * sorted.first().copied().unwrap_or(0) as f64;
+        let least = of_these.unwrap_or(0).max(nearly.ceil() as usize);
         let mut counts = counts.into_iter();
-        found.retain(|_| {
-            counts
-                .next()
-                .is_some_and(|n| n as f64 >= NEARLY_MOST * most)
-        });
+        found.retain(|_| counts.next().is_some_and(|n| n >= least));
         found
     }
 
