@@ -38,7 +38,7 @@ const N_TURNS: usize = 36;
 /// Where less than this share of the most holes have a counterpart, others lie closer to where the part belongs.
 const NEARLY_MOST: f64 = 0.85;
 /// Unless so many poses have more.
-const LEAST_FIRST: usize = 24;
+const LEAST_FIRST: usize = 4;
 /// First poses at most: of a plate with hundreds of like holes they say nothing.
 const MOST_FIRST: usize = 10_000;
 
