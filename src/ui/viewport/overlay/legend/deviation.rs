@@ -62,7 +62,9 @@ pub(super) fn show(
         numbers(ui, over, stats);
     }
     // At the foot, so that fields and bars stay where they are.
-    refusal(ui, upper.or(lower).or(band));
+    for refused in [upper, lower, band] {
+        refusal(ui, refused);
+    }
     if coloring != before {
         menu::set(over, coloring, commands);
     }
