@@ -70,11 +70,8 @@ pub fn chosen_by_shape(
     };
     let settled: Result<Vec<Similarity>, Cancelled> = near.par_iter().map(settle).collect();
     let poses: Vec<Similarity> = [*found].into_iter().chain(settled?).collect();
-    let mut candidates = judged(&poses, |pose, shape_at| {
-        let shape = shape_at(source, target, &pose, settings);
-        let is_asked = overhangs || shape.met < OVERHANGS;
-        let elsewhere = is_asked.then(|| few.elsewhere(&pose, shape.met));
-        Candidate::at(pose, &shape, elsewhere)
+    let mut candidates = judged(pair, &poses, settings, |pose, shape| {
+        few.candidate(pose, shape, overhangs)
     });
     monitor.check()?;
     let result = candidates.remove(0);
@@ -84,7 +81,7 @@ pub fn chosen_by_shape(
     let closer = || {
         candidates
             .iter()
-            .find(|other| other.lies_on(&result, distances.noise))
+            .find(|other| other.lies_exactly_elsewhere_unlike(&result, distances.noise))
     };
     let winner = better.or_else(closer).unwrap_or(&result);
     // Where surfaces leave the pose free, borders and holes have compared all poses, unless outlines are no evidence.
@@ -194,8 +191,8 @@ pub fn placed_by_holes(
     let on_holes = holes::poses(source, target, monitor)?;
     let settled: Result<Vec<Similarity>, Cancelled> = on_holes.par_iter().map(settle).collect();
     let poses: Vec<Similarity> = [*found].into_iter().chain(settled?).collect();
-    let mut better = judged(&poses, |pose, shape_at| {
-        Candidate::at(pose, &shape_at(source, target, &pose, settings), None)
+    let mut better = judged([source, target], &poses, settings, |pose, shape| {
+        Candidate::at(pose, shape, None)
     });
     monitor.check()?;
     let result = better.remove(0);
@@ -268,10 +265,11 @@ pub fn pulled_aside(
     if by_surfaces.max_displacement(by_borders, &corners) <= tolerance.remainder {
         return None;
     }
-    let few = FewPlaces::new([source, target], by_surfaces.scale, &distances);
-    let both = judged(&[*by_surfaces, *by_borders], |pose, shape_at| {
-        let shape = shape_at(source, target, &pose, settings);
-        few.candidate(pose, &shape)
+    let pair = [source, target];
+    let few = FewPlaces::new(pair, by_surfaces.scale, &distances);
+    let poses = [*by_surfaces, *by_borders];
+    let both = judged(pair, &poses, settings, |pose, shape| {
+        few.candidate(pose, shape, false)
     });
     let [before, after] = &both[..] else {
         return None;

@@ -47,33 +47,35 @@ impl<'a> FewPlaces<'a> {
         })
     }
 
-    /// A pose with what speaks against it; where each part has a piece that the other lacks, with what lies elsewhere.
-    pub(super) fn candidate(&self, pose: Similarity, shape: &ShapeStatement) -> Candidate {
-        let overhangs = shape.met < OVERHANGS;
-        let elsewhere = overhangs.then(|| self.elsewhere(&pose, shape.met));
+    /// A pose with what speaks against it; where each part has a piece that the other lacks, with the share of the smaller
+    /// one that lies neither on the other nor beyond its borders.
+    /// `overhangs` says that they have one under a pose that this one is compared with.
+    pub(super) fn candidate(
+        &self,
+        pose: Similarity,
+        shape: &ShapeStatement,
+        overhangs: bool,
+    ) -> Candidate {
+        let overhangs = overhangs || shape.met < OVERHANGS;
+        let elsewhere = overhangs.then(|| 1.0 - shape.met - self.0.overhang(&pose));
         Candidate::at(pose, shape, elsewhere)
-    }
-
-    /// Of a part of which the share `met` meets the other, the share that lies neither there nor beyond its borders.
-    pub(super) fn elsewhere(&self, pose: &Similarity, met: f64) -> f64 {
-        1.0 - met - self.0.overhang(pose)
     }
 }
 
-/// The comparison of both parts, source first, under a pose.
-pub(super) type ShapeAt = fn(&Surface, &Surface, &Similarity, &AssessSettings) -> ShapeStatement;
-
-/// Each pose with what speaks against it; `candidate` makes that of one comparison of the shapes. Where the outlines lie
+/// Each pose with what speaks against it; `candidate` makes that of the comparison of the shapes. Where the outlines lie
 /// together under no pose and are no evidence under one of them, they are none under the others either: that they lie
 /// beside others by chance speaks against none of them.
 pub(super) fn judged(
+    [source, target]: [&Surface; 2],
     poses: &[Similarity],
-    candidate: impl Fn(Similarity, ShapeAt) -> Candidate + Sync,
+    settings: &AssessSettings,
+    candidate: impl Fn(Similarity, &ShapeStatement) -> Candidate + Sync,
 ) -> Vec<Candidate> {
-    let with_outlines: ShapeAt =
-        |source, target, pose, settings| statements(source, target, pose, settings).shape;
-    let all = poses.par_iter().map(|pose| candidate(*pose, with_outlines));
-    let mut all: Vec<Candidate> = all.collect();
+    let with_outlines = |pose: &Similarity| {
+        let shape = statements(source, target, pose, settings).shape;
+        candidate(*pose, &shape)
+    };
+    let mut all: Vec<Candidate> = poses.par_iter().map(with_outlines).collect();
     let lie_together = all.iter().any(Candidate::has_outlines_together);
     let are_evidence = |candidate: &Candidate| !candidate.outlines_are_no_evidence;
     if lie_together || all.iter().all(are_evidence) {
@@ -81,10 +83,11 @@ pub(super) fn judged(
     }
     let others = all.par_iter_mut().filter(|other| are_evidence(other));
     others.for_each(|other| {
+        let shape = shape_without_outlines(source, target, &other.pose, settings);
         *other = Candidate {
             outlines_are_no_evidence: true,
             off: None,
-            ..candidate(other.pose, shape_without_outlines)
+            ..candidate(other.pose, &shape)
         };
     });
     all
@@ -95,28 +98,28 @@ pub(super) struct Candidate {
     pub(super) pose: Similarity,
     pub(super) n_differences: usize,
     /// Of these the ones that nothing but another place explains.
-    pub(super) n_clear: usize,
+    n_clear: usize,
     /// Holes with a counterpart, and those where the other part is solid.
     pub(super) n_holes: usize,
     pub(super) n_alone: usize,
     /// Whether outlines say nothing of the pose: one part is trimmed farther out, or few of them lie beside others.
     pub(super) outlines_are_no_evidence: bool,
     /// Whether outlines lie apart by more than is accepted.
-    pub(super) outlines_lie_apart: bool,
+    outlines_lie_apart: bool,
     /// Whether nothing at all speaks against one shape, a bend neither.
     pub(super) is_one_shape: bool,
     /// Share of the smaller part that meets the other, and, where each has a piece that the other lacks, the share that
     /// lies neither on the other part nor beyond its borders.
     pub(super) met: f64,
-    pub(super) elsewhere: Option<f64>,
+    elsewhere: Option<f64>,
     /// How far the surfaces lie apart by a bend and besides it.
     pub(super) apart: [f64; 2],
     /// A constant distance of the sheets besides.
-    pub(super) offset: f64,
+    offset: f64,
     /// How far outlines and holes lie apart, where there are enough of both, …
-    pub(super) off: Option<[f64; 2]>,
+    off: Option<[f64; 2]>,
     /// … and what is accepted of them.
-    pub(super) limit: f64,
+    limit: f64,
 }
 
 impl Candidate {
@@ -134,7 +137,8 @@ impl Candidate {
             outlines_are_no_evidence: borders.other_trim.is_some() || borders.offset.is_none(),
             is_one_shape: shape.reasons.is_empty(),
             offset: shape.offset.unwrap_or(0.0),
-            outlines_lie_apart: shape.reasons.iter().any(is_of_outlines),
+            outlines_lie_apart: (shape.reasons.iter())
+                .any(|reason| matches!(reason, ShapeReason::Borders { .. })),
             met: shape.met,
             elsewhere,
             apart: [shape.springback, shape.remainder],
@@ -179,18 +183,16 @@ impl Candidate {
     /// more of the parts meets while the surfaces lie much farther apart: a piece lies on another by chance hardly ever,
     /// while a bend and an offset explain much.
     pub(super) fn lies_much_closer_elsewhere_than(&self, other: &Self, noise: f64) -> bool {
-        let in_all = |of: &Self| of.apart().hypot(of.offset);
         self.elsewhere.is_some_and(|share| share < ELSEWHERE)
             && (LEAST_SHARED..other.met).contains(&self.met)
             && self.n_differences <= other.n_differences
             && self.n_alone <= other.n_alone
-            && is_much_closer(self.met, in_all(self), in_all(other), noise)
+            && is_much_closer(self.met, self.apart_in_all(), other.apart_in_all(), noise)
     }
 
-    /// Whether a piece of each part even lies on the other, but for what facets leave, while the other pose keeps them
-    /// much farther apart.
-    pub(super) fn lies_on(&self, other: &Self, noise: f64) -> bool {
-        self.apart().hypot(self.offset) <= ON_EACH_OTHER * noise
+    /// The same where the piece even lies on the other part but for what facets leave.
+    pub(super) fn lies_exactly_elsewhere_unlike(&self, other: &Self, noise: f64) -> bool {
+        self.apart_in_all() <= ON_EACH_OTHER * noise
             && self.lies_much_closer_elsewhere_than(other, noise)
     }
 
@@ -202,6 +204,11 @@ impl Candidate {
     /// How far the surfaces lie apart by bends and besides them.
     pub(super) fn apart(&self) -> f64 {
         self.apart[0].hypot(self.apart[1])
+    }
+
+    /// The same with a constant distance of the sheets.
+    fn apart_in_all(&self) -> f64 {
+        self.apart().hypot(self.offset)
     }
 
     /// Whether the shapes surely differ less under this pose: there are fewer differences, or as many while holes
@@ -235,10 +242,6 @@ fn is_clear(reason: &ShapeReason) -> Option<bool> {
         ShapeReason::Holes { .. } => Some(true),
         ShapeReason::HardlyMet { .. } | ShapeReason::Stretched { .. } => Some(false),
     }
-}
-
-fn is_of_outlines(reason: &ShapeReason) -> bool {
-    matches!(reason, ShapeReason::Borders { .. })
 }
 
 #[cfg(test)]

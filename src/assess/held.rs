@@ -120,11 +120,12 @@ pub fn held_by_borders(
         monitor.check()?;
         poses.extend(slid(source, target, root, free, MOST_SLID));
     }
+    poses.extend(&others);
     // A hole may be smaller than the search along the motion can tell.
     if outcome.rivals_sought && holes::can_place(source, target, found) {
-        poses.extend(holes::poses(source, target, monitor)?);
+        let known = (&poses[..], pair.springback);
+        poses.extend(holes::poses_unlike(source, target, known, monitor)?);
     }
-    poses.extend(&others);
     let by_borders = pair.by_borders(&poses, monitor)?;
     let settle = |pose: &Similarity| {
         monitor.check()?;

@@ -35,3 +35,19 @@ pub(super) fn poses(
     }
     Ok(poses)
 }
+
+/// Of these the poses that lie farther than `apart` from all known ones, which are more exact.
+pub(super) fn poses_unlike(
+    source: &Surface,
+    target: &Surface,
+    (known, apart): (&[Similarity], f64),
+    monitor: &Monitor,
+) -> Result<Vec<Similarity>, Cancelled> {
+    let corners = source.mesh().aabb().corners();
+    let mut found = poses(source, target, monitor)?;
+    found.retain(|pose| {
+        let mut known = known.iter();
+        known.all(|known| pose.max_displacement(known, &corners) > apart)
+    });
+    Ok(found)
+}

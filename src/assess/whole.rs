@@ -60,8 +60,8 @@ pub fn placed_as_a_whole(
     poses.retain(|pose| pose.max_displacement(found, &corners) > far);
     poses.insert(0, *found);
     let few = FewPlaces::new(pair, 1.0, &distances);
-    let mut candidates = judged(&poses, |pose, shape_at| {
-        few.candidate(pose, &shape_at(source, target, &pose, settings))
+    let mut candidates = judged(pair, &poses, settings, |pose, shape| {
+        few.candidate(pose, shape, false)
     });
     monitor.check()?;
     let result = candidates.remove(0);

@@ -229,13 +229,19 @@ fn a_file_that_changed_keeps_the_pose_and_ages_the_result() {
     assert!(toast.text.contains("has changed since"), "{}", toast.text);
 }
 
-#[test]
-fn a_missing_file_is_asked_for_or_done_without() {
+/// A saved project whose stamped file was moved since, with the files it names and where that one is now.
+fn saved_without_stamped() -> (tempfile::TempDir, [PathBuf; 3], PathBuf) {
     let (folder, [crash, stamped, path]) = folder();
     let mut window = worked(&crash, &stamped);
     save(&mut window, &path);
-    let hidden = folder.path().join("elsewhere.k");
-    std::fs::rename(&stamped, &hidden).unwrap();
+    let elsewhere = folder.path().join("elsewhere.k");
+    std::fs::rename(&stamped, &elsewhere).unwrap();
+    (folder, [crash, stamped, path], elsewhere)
+}
+
+#[test]
+fn a_missing_file_is_asked_for_or_done_without() {
+    let (_folder, [_, stamped, path], hidden) = saved_without_stamped();
     let mut asked = open(&path);
     assert_eq!(asked.state.view.dialog, Some(Dialog::MissingFiles));
     let (_, missing) = asked.state.project.missing.clone().unwrap();
@@ -257,11 +263,7 @@ fn a_missing_file_is_asked_for_or_done_without() {
 /// The crash part read as the stamped part would be matched onto itself.
 #[test]
 fn the_file_of_the_other_part_is_not_taken_for_a_missing_one() {
-    let (folder, [crash, stamped, path]) = folder();
-    let mut window = worked(&crash, &stamped);
-    save(&mut window, &path);
-    let elsewhere = folder.path().join("elsewhere.k");
-    std::fs::rename(&stamped, &elsewhere).unwrap();
+    let (folder, [crash, stamped, path], elsewhere) = saved_without_stamped();
     let copy = folder.path().join("copy.k");
     std::fs::copy(&crash, &copy).unwrap();
     let of_stamped = ProjectFile::Part(Role::Stamped);

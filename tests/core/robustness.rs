@@ -109,6 +109,7 @@ fn growth_tells_times_and_exponents_of_right_poses() {
 fn pieces_of_parts_that_slide_are_found_along_all_of_the_part() {
     for (seed, part, scenario) in [
         (21, SamplePart::Plate, Scenario::Cut(0.2)),
+        (21, SamplePart::Channel, Scenario::Cut(0.2)),
         (21, SamplePart::Channel, Scenario::Coarse),
         (31, SamplePart::Fender, Scenario::Addendum),
         (31, SamplePart::Sill, Scenario::Addendum),
@@ -124,15 +125,10 @@ fn pieces_of_parts_that_slide_are_found_along_all_of_the_part() {
         assert!(run.node_error.is_some_and(|error| error < 1.0), "{run:?}");
     }
     // A piece of a cup without its hole belongs to many places; a cut along the hole of the other part by
-    // chance does not tell which. A piece of a channel fits turned by half as well.
-    for (seed, part) in [(61, SamplePart::Cup), (21, SamplePart::Channel)] {
-        let piece = run(seed, part, Scenario::Cut(0.2));
-        assert!(
-            matches!(piece.ending, Ending::Twin | Ending::Right),
-            "{piece:?}"
-        );
-        assert_eq!(piece.verdict, Verdict::Check, "{piece:?}");
-    }
+    // chance does not tell which.
+    let piece = run(61, SamplePart::Cup, Scenario::Cut(0.2));
+    assert_eq!(piece.ending, Ending::Twin, "{piece:?}");
+    assert_eq!(piece.verdict, Verdict::Check, "{piece:?}");
     // The parts of both sides differ by one hole.
     let other = run(21, SamplePart::Crossmember, Scenario::OtherHand);
     assert_eq!(other.verdict, Verdict::Poor, "{other:?}");
@@ -149,13 +145,16 @@ fn holes_place_a_part_before_its_last_trim() {
         fender.node_error.is_some_and(|error| error < 0.2),
         "{fender:?}"
     );
-    // Half of the holes are not punched yet, and those that are fit after half a turn nearly as well.
-    for seed in [91, 94, 95] {
+    // Half of the holes are not punched yet, and those that are fit after half a turn as well.
+    for seed in [91, 94] {
         let channel = run(seed, SamplePart::Channel, Scenario::Addendum);
         assert_eq!(channel.verdict, Verdict::Check, "{channel:?}");
-        let is_told = channel.pose == Some(PoseKind::Ambiguous);
-        assert!(channel.ending == Ending::Right || is_told, "{channel:?}");
+        assert_eq!(channel.pose, Some(PoseKind::Ambiguous), "{channel:?}");
     }
+    // More of them fit under the true pose than under any other.
+    let channel = run(95, SamplePart::Channel, Scenario::Addendum);
+    assert_eq!(channel.verdict, Verdict::Check, "{channel:?}");
+    assert_eq!(channel.ending, Ending::Right, "{channel:?}");
 }
 
 /// Outlines that end anywhere lie beside each other under one pose and not under the next one of a row of holes: that

@@ -84,13 +84,22 @@ fn strip(pitch: f64, [first, last]: [f64; 2]) -> TriMesh {
         let is_in = |hole: &[f64; 2]| (x - hole[0]).abs() < 6.0 && (y - hole[1]).abs() < 6.0;
         !HOLES.iter().any(is_in)
     };
+    sheet(points.collect(), [columns, rows], is_solid)
+}
+
+/// A mesh of rows of points, so many cells each, without the cells that are not solid.
+fn sheet(
+    points: Vec<Point3>,
+    [columns, rows]: [u32; 2],
+    is_solid: impl Fn(&(u32, u32)) -> bool,
+) -> TriMesh {
     let cells = (0..columns * rows).map(|k| (k % columns, k / columns));
     let triangles = cells.filter(is_solid).flat_map(|(i, j)| {
         let a = j * (columns + 1) + i;
         let up = a + columns + 1;
         [[a, a + 1, up + 1], [a, up + 1, up]]
     });
-    TriMesh::new(points.collect(), triangles.collect()).unwrap()
+    TriMesh::new(points, triangles.collect()).unwrap()
 }
 
 #[test]
@@ -129,13 +138,7 @@ fn lattice([x0, y0]: [f64; 2], length: f64) -> TriMesh {
         let is_extra = (x - 150.0).abs() < 6.0 && (y - 250.0).abs() < 6.0;
         !(is_hole || is_extra)
     };
-    let cells = (0..n * n).map(|k| (k % n, k / n));
-    let triangles = cells.filter(is_solid).flat_map(|(i, j)| {
-        let a = j * (n + 1) + i;
-        let up = a + n + 1;
-        [[a, a + 1, up + 1], [a, up + 1, up]]
-    });
-    TriMesh::new(points.collect(), triangles.collect()).unwrap()
+    sheet(points.collect(), [n, n], is_solid)
 }
 
 #[test]
