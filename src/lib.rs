@@ -21,6 +21,7 @@
 //! - [`registration`]: Umeyama, ICP, Trimmed ICP, Fractional ICP, and the search from many starts.
 //! - [`mapping`]: forming results from the stamped shells onto the crash shells.
 //! - [`assess`]: is the pose right? Coverage, ambiguity, free motions, verdict.
+//! - [`settling`]: the last steps of a match, which choose and move the pose that is assessed.
 //! - [`settings`]: the settings of match and mapping by name, one row each.
 //! - [`samples`]: generated pairs of sheet parts with a known pose.
 //! - [`report`]: the matrix in all its forms, LS-DYNA cards, the record of a run.
@@ -52,6 +53,7 @@ pub mod samples;
 
 pub mod assess;
 pub mod settings;
+pub mod settling;
 
 pub mod report;
 

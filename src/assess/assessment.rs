@@ -4,10 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::ambiguity::Ambiguity;
 use super::coverage::Coverage;
+use super::free_motion::{FreeMotion, Freedom};
 use super::pose::PoseStatement;
 use super::reason::Reason;
 use super::shape::ShapeStatement;
-use super::sliding::{FreeMotion, Freedom};
 use super::uncertainty::PoseUncertainty;
 use super::verdict::Verdict;
 use crate::registration::{MirrorCheck, ScaleCheck};

@@ -22,17 +22,17 @@ pub(super) struct BorderCurve {
 
 /// A place along a border.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
-    pub(super) point: Point3,
-    pub(super) tangent: Vector3,
+pub(crate) struct Place {
+    pub(crate) point: Point3,
+    pub(crate) tangent: Vector3,
     /// Of the sheet.
-    pub(super) normal: Vector3,
+    pub(crate) normal: Vector3,
     pub(super) is_hole: bool,
 }
 
 /// About `n` places in the target's frame along those borders of a part that are wanted: of holes or of
 /// trims.
-pub(super) fn places(
+pub(crate) fn places(
     (surface, target_from_surface): (&Surface, &Similarity),
     n: usize,
     is_wanted: impl Fn(bool) -> bool,

@@ -9,7 +9,7 @@ use crate::registration::Surface;
 use crate::search::{ClosestPoint, PointTree};
 
 /// Holes in common that hold a part whose surface can slide.
-pub(super) const HOLES_THAT_HOLD: usize = 2;
+pub(crate) const HOLES_THAT_HOLD: usize = 2;
 /// Borders are cut into straight edges; so much of their mean edge length is no deviation.
 const BORDER_FACETS: f64 = 0.06;
 /// So many times the median step aside is none either.
@@ -31,27 +31,27 @@ const ANOTHER_KIND: f64 = 4.0;
 const MUTUAL: f64 = 0.7;
 /// Where fewer of the smaller part's borders lie beside borders of the other, the parts are trimmed differently
 /// and borders say nothing about the shape.
-pub(super) const LEAST_PAIRED: f64 = 0.4;
+pub(crate) const LEAST_PAIRED: f64 = 0.4;
 /// Points of the other part's borders in the tree.
 const N_DENSE: f64 = 40_000.0;
 
 /// A place on a border of one part beside a border of the other, in the target's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct BorderPair {
+pub(crate) struct BorderPair {
     pub(super) point: Point3,
     /// Unit direction out of the target's sheet, within it.
     pub(super) across: Vector3,
     /// How far the source's border lies outside the target's.
-    pub(super) gap: f64,
+    pub(crate) gap: f64,
     /// Area that it stands for: length times an edge.
-    pub(super) weight: f64,
+    pub(crate) weight: f64,
     /// Which borders they are.
-    pub(super) kind: PairKind,
+    pub(crate) kind: PairKind,
 }
 
 /// Which borders lie beside each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum PairKind {
+pub(crate) enum PairKind {
     /// Two outlines.
     Outlines,
     /// Two borders of holes.
@@ -62,23 +62,23 @@ pub(super) enum PairKind {
 
 /// A hole in the target's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Hole {
+pub(crate) struct Hole {
     pub(super) center: Point3,
     /// Mean distance of its border from the centre.
     pub(super) radius: f64,
     /// Of its border.
     length: f64,
     /// Of the sheet around it.
-    pub(super) normal: Vector3,
+    pub(crate) normal: Vector3,
 }
 
 /// A hole that both parts have.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct HolePair {
+pub(crate) struct HolePair {
     /// The target's.
-    pub(super) hole: Hole,
+    pub(crate) hole: Hole,
     /// From its middle to that of the source's.
-    pub(super) off: Vector3,
+    pub(crate) off: Vector3,
     /// Difference of the radii.
     pub(super) wider: f64,
 }
@@ -95,14 +95,14 @@ impl HolePair {
 
 /// How the borders of both parts lie.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Borders {
+pub(crate) struct Borders {
     pairs: Vec<BorderPair>,
     /// Holes of both.
-    pub(super) holes: Vec<HolePair>,
+    pub(crate) holes: Vec<HolePair>,
     /// Holes that overlap and are not the same: one was moved by more than its radius, or has another size.
     pub(super) overlapping: Vec<HolePair>,
     /// Holes of the source where the target is solid, and the other way round.
-    pub(super) missing: [Vec<Hole>; 2],
+    pub(crate) missing: [Vec<Hole>; 2],
     /// Mean edge length of the coarser mesh.
     pub(super) edge: f64,
     /// How far the borders of the more ragged part step aside from one node to the next, as where elements
@@ -114,7 +114,7 @@ pub(super) struct Borders {
 
 /// The borders of two parts, ready to be compared under one pose after another.
 #[derive(Debug, Clone)]
-pub(super) struct BorderComparison<'a> {
+pub(crate) struct BorderComparison<'a> {
     /// Source and target.
     surfaces: [&'a Surface; 2],
     borders: [Vec<BorderCurve>; 2],
@@ -144,7 +144,7 @@ struct BorderPlaces {
 
 impl<'a> BorderComparison<'a> {
     /// Prepares for poses of this scale. O(border edges).
-    pub(super) fn new(surfaces: [&'a Surface; 2], scale: f64, near: f64) -> Self {
+    pub(crate) fn new(surfaces: [&'a Surface; 2], scale: f64, near: f64) -> Self {
         let [source, target] = surfaces;
         let borders = surfaces.map(curves_of);
         let of_source = is_source_smaller(source, target, scale);
@@ -172,7 +172,7 @@ impl<'a> BorderComparison<'a> {
     }
 
     /// Compares the borders that lie near each other under a pose. O(border edges + near triangles).
-    pub(super) fn at(&self, pose: &Similarity) -> Borders {
+    pub(crate) fn at(&self, pose: &Similarity) -> Borders {
         let still = Similarity::identity();
         let places = self.places.iter();
         let mut pairs: Vec<BorderPair> = if self.of_source {
@@ -287,7 +287,7 @@ impl Borders {
         quantile(&mut sizes.collect::<Vec<_>>(), 0.9)
     }
 
-    pub(super) fn pairs(&self) -> &[BorderPair] {
+    pub(crate) fn pairs(&self) -> &[BorderPair] {
         &self.pairs
     }
 
@@ -302,23 +302,23 @@ impl Borders {
     }
 
     /// The borders without outlines, which lie beside each other by chance where the parts are trimmed differently.
-    pub(super) fn of_holes(&self) -> Self {
+    pub(crate) fn of_holes(&self) -> Self {
         self.filtered(|_, pair| pair.kind == PairKind::Holes)
     }
 
     /// Distance between borders that says nothing about the parts.
-    pub(super) fn unremarkable(&self) -> f64 {
+    pub(crate) fn unremarkable(&self) -> f64 {
         BORDER_FACETS * self.edge + RAGGED * self.ragged
     }
 
     /// How far apart borders may lie: what facets and ragged trims do to them has nothing to do with how the
     /// parts differ.
-    pub(super) fn limit(&self, tolerance: &ShapeTolerance) -> f64 {
+    pub(crate) fn limit(&self, tolerance: &ShapeTolerance) -> f64 {
         tolerance.remainder.hypot(self.unremarkable())
     }
 
     /// Share of the smaller part's borders that lie beside borders of the other.
-    pub(super) fn share(&self) -> f64 {
+    pub(crate) fn share(&self) -> f64 {
         let paired = self.pairs.iter().map(|p| p.weight).sum::<f64>() / self.edge;
         if self.length > 0.0 {
             paired / self.length
@@ -329,7 +329,7 @@ impl Borders {
 
     /// Length of the borders of holes where the other part is solid, as a share of all borders of the smaller
     /// part.
-    pub(super) fn missing_share(&self) -> f64 {
+    pub(crate) fn missing_share(&self) -> f64 {
         let missing = self.missing.iter().flatten();
         let length: f64 = missing.map(|hole| hole.length).sum();
         if self.length > 0.0 {
@@ -341,7 +341,7 @@ impl Borders {
 
     /// Root mean square distance of the smaller part's borders from those of the other, which were looked for within
     /// `near`; a border or a hole without counterpart lies that far away too.
-    pub(super) fn apart(&self, near: f64) -> f64 {
+    pub(crate) fn apart(&self, near: f64) -> f64 {
         let share = self.share().min(1.0);
         let paired: f64 = self.pairs.iter().map(|p| p.weight).sum();
         let gaps = self.pairs.iter().map(|p| p.weight * p.gap * p.gap);

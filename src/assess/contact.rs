@@ -14,9 +14,9 @@ use crate::registration::Surface;
 use crate::search::{ClosestPoint, SurfaceHit};
 
 /// Nodes of the smaller part that are looked at; more change no figure by a percent.
-pub(super) const MAX_NODES: usize = 8000;
+pub(crate) const MAX_NODES: usize = 8000;
 /// Nodes of the smaller part that poses are compared on.
-pub(super) const FEW_NODES: usize = 2000;
+pub(crate) const FEW_NODES: usize = 2000;
 /// Surfaces that turn away from each other by more than this do not lie on each other: cosine of 50°.
 const MIN_FACING: f64 = 0.64;
 /// Motions that meet less than this share of the resistance of the stiffest are left alone.
@@ -39,14 +39,14 @@ pub(super) struct Contact {
 
 /// All places where the parts meet.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Contacts {
+pub(crate) struct Contacts {
     pub(super) list: Vec<Contact>,
     /// Nodes of the smaller part that were looked at and meet nothing.
     unmet: Vec<u32>,
     /// Nodes of the smaller part for each one that was looked at.
     pub(super) nodes_per_place: f64,
     /// Share of the smaller part's area that meets the other part.
-    pub(super) share: f64,
+    pub(crate) share: f64,
     /// Middle of the places, and their mean distance from it.
     pub(super) center: Point3,
     pub(super) radius: f64,
@@ -58,7 +58,7 @@ pub(super) type Six = SVector<f64, 6>;
 
 /// The search for the places where two parts meet, under one pose after another.
 #[derive(Debug, Clone)]
-pub(super) struct ContactSearch<'a> {
+pub(crate) struct ContactSearch<'a> {
     source: &'a Surface,
     target: &'a Surface,
     /// Whether the source is the smaller part, whose nodes are looked at.
@@ -72,7 +72,7 @@ pub(super) struct ContactSearch<'a> {
 
 impl<'a> ContactSearch<'a> {
     /// Prepares for poses of this scale; about `max_nodes` nodes of the smaller part are looked at.
-    pub(super) fn new(
+    pub(crate) fn new(
         [source, target]: [&'a Surface; 2],
         scale: f64,
         reach: f64,
@@ -97,13 +97,13 @@ impl<'a> ContactSearch<'a> {
         [self.source, self.target]
     }
 
-    pub(super) fn reach(&self) -> f64 {
+    pub(crate) fn reach(&self) -> f64 {
         self.reach
     }
 
     /// The places where the parts meet under a pose. O(nodes · log triangles), less for a pose near the
     /// last one.
-    pub(super) fn at(&mut self, pose: &Similarity) -> Option<Contacts> {
+    pub(crate) fn at(&mut self, pose: &Similarity) -> Option<Contacts> {
         self.at_scaled(pose, None)
     }
 
@@ -149,7 +149,7 @@ impl<'a> ContactSearch<'a> {
 
     /// Share of the smaller part's area that lies beyond the borders of the other part under a pose: its closest
     /// place there is a border that lies off its reach or beside it. O(nodes · log triangles).
-    pub(super) fn overhang(&self, pose: &Similarity) -> f64 {
+    pub(crate) fn overhang(&self, pose: &Similarity) -> f64 {
         let Sides {
             data,
             model,
@@ -286,7 +286,7 @@ impl Contacts {
 
     /// The distances of the surfaces where they meet, without an offset of all of them by at most `offset`: skin and
     /// mid-surface lie apart at the right pose too.
-    pub(super) fn without_offset(&self, offset: f64) -> Vec<f64> {
+    pub(crate) fn without_offset(&self, offset: f64) -> Vec<f64> {
         let weight: f64 = self.list.iter().map(|c| c.weight).sum();
         let mean = self.list.iter().map(|c| c.weight * c.gap).sum::<f64>() / weight;
         let offset = mean.clamp(-offset, offset);
@@ -294,7 +294,7 @@ impl Contacts {
     }
 
     /// The root mean square of the distances [`Contacts::without_offset`].
-    pub(super) fn typical_gap(&self, offset: f64) -> f64 {
+    pub(crate) fn typical_gap(&self, offset: f64) -> f64 {
         let weight: f64 = self.list.iter().map(|c| c.weight).sum();
         let gaps = self.without_offset(offset).into_iter();
         let squares = gaps.zip(&self.list).map(|(gap, c)| c.weight * gap.powi(2));
@@ -302,7 +302,7 @@ impl Contacts {
     }
 
     /// The size that these values, one for each place, do not exceed over this share of the area.
-    pub(super) fn at_share(&self, values: &[f64], share: f64) -> f64 {
+    pub(crate) fn at_share(&self, values: &[f64], share: f64) -> f64 {
         let sizes = values.iter().map(|v| v.abs());
         let sizes = sizes.zip(self.list.iter().map(|c| c.weight));
         quantile(&mut sizes.collect::<Vec<_>>(), share)
@@ -398,7 +398,7 @@ fn facet_error(model: &Surface, triangle: usize, normal: &Vector3) -> f64 {
 }
 
 /// Weighted quantile; reorders. 0 without values. O(values).
-pub(super) fn quantile(values: &mut [(f64, f64)], share: f64) -> f64 {
+pub(crate) fn quantile(values: &mut [(f64, f64)], share: f64) -> f64 {
     let weight_of = |values: &[(f64, f64)]| values.iter().map(|(_, weight)| weight).sum::<f64>();
     let mut wanted = share * weight_of(values);
     let mut rest = values;
@@ -421,7 +421,7 @@ pub(super) fn quantile(values: &mut [(f64, f64)], share: f64) -> f64 {
 }
 
 /// Least squares over `N` unknowns; directions that the rows do not fix stay zero.
-pub(super) fn solve<const N: usize>(
+pub(crate) fn solve<const N: usize>(
     matrix: &SMatrix<f64, N, N>,
     right: &SVector<f64, N>,
 ) -> SVector<f64, N> {

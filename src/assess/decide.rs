@@ -8,10 +8,10 @@ use std::cmp::Ordering;
 use super::ambiguity::Clarity;
 use super::assessment::Assessment;
 use super::borders::HOLES_THAT_HOLD;
+use super::free_motion::FreeMotionKind;
 use super::pose::{PoseKind, PoseStatement};
 use super::reason::Reason;
 use super::shape::{ELSEWHERE, ShapeReason, ShapeStatement};
-use super::sliding::FreeMotionKind;
 use super::tolerance::{AssessSettings, UNREMARKABLE};
 use super::verdict::Verdict;
 use crate::registration::starts::StartKind;
@@ -31,8 +31,8 @@ const SEVERAL_TO: f64 = 500.0;
 const FAR_APART: f64 = 50.0;
 
 /// Sets the verdict, its reasons, the most severe first, and the statement about the pose. `mirrored` is the
-/// statement about the shape of the opposite hand, `most_scaled` how far the scale of the pairs may be off, `settings` those of
-/// the assessment.
+/// statement about the shape of the opposite hand, `most_scaled` how far the scale of the pairs may be off,
+/// `settings` those of the assessment.
 pub(super) fn decide(
     assessment: &mut Assessment,
     shape: &ShapeStatement,

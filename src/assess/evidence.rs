@@ -8,12 +8,12 @@ use crate::geometry::{Point3, Similarity};
 use crate::registration::Surface;
 
 /// Two parts under a pose, and where they meet.
-pub(super) struct PoseEvidence<'a> {
-    pub(super) source: &'a Surface,
+pub(crate) struct PoseEvidence<'a> {
+    pub(crate) source: &'a Surface,
     pub(super) target: &'a Surface,
     pub(super) pose: Similarity,
-    pub(super) contacts: Contacts,
-    pub(super) borders: Borders,
+    pub(crate) contacts: Contacts,
+    pub(crate) borders: Borders,
     /// Faceting of both meshes.
     pub(super) noise: f64,
     /// Surfaces within it are compared.
@@ -47,7 +47,7 @@ impl PoseEvidence<'_> {
 }
 
 /// The search for what two parts show. Both are prepared once for all poses of one scale.
-pub(super) struct EvidenceSearch<'a, 'b> {
+pub(crate) struct EvidenceSearch<'a, 'b> {
     contacts: ContactSearch<'a>,
     borders: &'b BorderComparison<'a>,
     noise: f64,
@@ -55,7 +55,7 @@ pub(super) struct EvidenceSearch<'a, 'b> {
 }
 
 impl<'a, 'b> EvidenceSearch<'a, 'b> {
-    pub(super) fn new(
+    pub(crate) fn new(
         contacts: ContactSearch<'a>,
         borders: &'b BorderComparison<'a>,
         distances: &Distances,
@@ -70,7 +70,7 @@ impl<'a, 'b> EvidenceSearch<'a, 'b> {
 
     /// What the parts show under a pose; `None` where their surfaces do not meet.
     /// O(border edges + nodes · log triangles), less for a pose near the last one.
-    pub(super) fn at(&mut self, pose: &Similarity) -> Option<PoseEvidence<'a>> {
+    pub(crate) fn at(&mut self, pose: &Similarity) -> Option<PoseEvidence<'a>> {
         let contacts = self.contacts.at(pose)?;
         let [source, target] = self.contacts.surfaces();
         Some(PoseEvidence {

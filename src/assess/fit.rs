@@ -18,11 +18,11 @@ const ROUNDS: usize = 4;
 pub(super) const LEAST_OWN: f64 = 0.02;
 
 /// The gaps taken apart.
-pub(super) struct Fit {
+pub(crate) struct Fit {
     /// Of each place, what rigid motion and bends explain.
-    pub(super) smooth: Vec<f64>,
+    pub(crate) smooth: Vec<f64>,
     /// What nothing explains, not even the facets.
-    pub(super) left: Vec<f64>,
+    pub(crate) left: Vec<f64>,
     /// The same for each pair of borders and of holes.
     pub(super) borders: Vec<f64>,
     pub(super) holes: Vec<HoleLeft>,
@@ -70,7 +70,7 @@ pub(super) fn explaining(
 
 impl Fit {
     /// The offset of the sheets, where it can be told from a shift.
-    pub(super) fn separate_offset(&self) -> Option<f64> {
+    pub(crate) fn separate_offset(&self) -> Option<f64> {
         self.is_separable.then_some(self.offset)
     }
 
@@ -81,7 +81,7 @@ impl Fit {
     }
 
     /// The pose of the evidence that this is the fit of, moved to where the source belongs.
-    pub(super) fn corrected(&self, evidence: &PoseEvidence<'_>) -> Similarity {
+    pub(crate) fn corrected(&self, evidence: &PoseEvidence<'_>) -> Similarity {
         let correction = evidence.contacts.undo(&self.rigid);
         correction.after(&evidence.pose)
     }
@@ -89,7 +89,7 @@ impl Fit {
     /// Robust least squares over a rigid motion, an offset and the bends of a plate that keep lengths
     /// (second and third order). Borders take part, so that a slide of the pose along the part is no
     /// difference of the shape. O(places).
-    pub(super) fn of(evidence: &PoseEvidence<'_>) -> Self {
+    pub(crate) fn of(evidence: &PoseEvidence<'_>) -> Self {
         let (contacts, borders) = (&evidence.contacts, &evidence.borders);
         let bends = Bends::of(evidence.source, &evidence.pose, contacts);
         let row = |point: &Point3, direction: &Vector3, offset: f64| {

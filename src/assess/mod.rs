@@ -1,64 +1,48 @@
-//! Is the pose right? Measured anew on the full meshes, without anything the search believed.
+//! Is the pose right? Distances, uncertainty and shape are measured anew on the full meshes; scores of alternatives
+//! and of the opposite hand are those of the search.
 //!
 //! From the bottom up: `tolerance` says how far parts may differ; `contact` and `borders` find where two parts meet
 //! under a pose, `evidence` joins what they found, `fit` splits the gaps into a motion, an offset and bends; `trims`,
-//! `aside`, `stretch` and `shape` say how the parts differ, `uncertainty` how far the pose may be off. With these,
-//! `settle`, `slide`, `all_pairs`, `held`, `holes`, `candidate`, `alternatives`, `unbent` and `skin` improve or choose a pose before it is
-//! assessed, and `decide` makes the verdict of an [`Assessment`].
+//! `outline_shift`, `stretch` and `shape` say how the parts differ, `free_motion` how far the surfaces hold the part,
+//! `uncertainty` how far the pose may be off. `statements` asks them of a pose, and `decide` makes the verdict of an
+//! [`Assessment`]. The layer above, `settling`, chooses the pose by the same measures before it is assessed.
 
-mod all_pairs;
-mod alternatives;
 mod ambiguity;
-mod aside;
 mod assessment;
-mod border_curve;
-mod borders;
-mod candidate;
-mod contact;
+pub(crate) mod border_curve;
+pub(crate) mod borders;
+pub(crate) mod contact;
 mod coverage;
 mod decide;
 pub mod deviation;
-mod evidence;
-mod fit;
-mod held;
-mod holes;
+pub(crate) mod evidence;
+pub(crate) mod fit;
+pub(crate) mod free_motion;
+mod outline_shift;
 mod pose;
 mod reason;
 mod scaled;
-mod settle;
-mod shape;
-mod skin;
-mod slide;
-mod sliding;
-mod statements;
+pub(crate) mod shape;
+pub(crate) mod statements;
 mod stretch;
-mod tolerance;
-mod trims;
-mod unbent;
+pub(crate) mod tolerance;
+pub(crate) mod trims;
 mod uncertainty;
 mod verdict;
-mod whole;
 mod words;
 
-pub use all_pairs::is_better_with_all_pairs;
-pub use alternatives::{PulledAside, chosen_by_shape, placed_by_holes, pulled_aside};
 pub use ambiguity::{Ambiguity, Clarity, Twin, TwinAxis};
 pub use assessment::{AlternativeStatements, Assessment};
 pub use coverage::{Coverage, OneSided, coverage, overlap_limit, quick_overlap};
-pub use held::{HeldPose, hand_by_borders, held_by_borders};
+pub use free_motion::{FreeMotion, FreeMotionKind, Freedom, free_motions};
 pub use pose::{PoseKind, PoseStatement};
 pub use reason::Reason;
-pub use settle::settled;
 pub use shape::{BorderFit, ShapeKind, ShapeReason, ShapeStatement};
-pub use skin::without_offset;
-pub use sliding::{FreeMotion, FreeMotionKind, Freedom, free_motions};
 pub use stretch::PartAxis;
 pub use tolerance::{AssessSettings, ShapeTolerance};
 pub use trims::BorderApart;
-pub use unbent::without_bend;
 pub use uncertainty::{PartDirection, PoseUncertainty};
 pub use verdict::Verdict;
-pub use whole::placed_as_a_whole;
 pub use words::{beside, error_beside};
 
 use crate::geometry::Similarity;
@@ -91,7 +75,7 @@ pub fn assess(
     let Distances {
         noise, tolerance, ..
     } = Distances::of(source, target, pose.scale, settings);
-    let Statements { uncertainty, shape } = statements(source, target, pose, settings);
+    let Statements { uncertainty, shape } = statements([source, target], pose, settings);
     let mut assessment = Assessment {
         verdict: Verdict::Good,
         reasons: Vec::new(),
@@ -109,7 +93,7 @@ pub fn assess(
         shape: None,
     };
     let most_scaled = tolerance.springback / (0.5 * target.measures().diagonal);
-    let mirrored = mirrored_statement(source, target, outcome, settings);
+    let mirrored = mirrored_statement([source, target], outcome, settings);
     decide::decide(
         &mut assessment,
         &shape,
@@ -133,7 +117,7 @@ pub fn assess_alternative(
     settings: &AssessSettings,
 ) -> AlternativeStatements {
     let tolerance = Distances::of(source, target, pose.scale, settings).tolerance;
-    let Statements { uncertainty, shape } = statements(source, target, pose, settings);
+    let Statements { uncertainty, shape } = statements([source, target], pose, settings);
     AlternativeStatements {
         pose: PoseStatement {
             kind: PoseKind::Ambiguous,

@@ -5,11 +5,11 @@ mod local;
 
 use serde::{Deserialize, Serialize};
 
-use super::aside::outline_aside_of_holes;
 use super::borders::{Borders, LEAST_PAIRED};
 use super::contact::Contacts;
 use super::evidence::PoseEvidence;
 use super::fit::{Fit, HoleLeft};
+use super::outline_shift::outline_aside_of_holes;
 use super::stretch::{PartAxis, Stretch, stretch};
 use super::tolerance::{ShapeTolerance, UNREMARKABLE};
 use super::trims::{self, BorderApart};
@@ -23,14 +23,14 @@ const LEAST_MET: f64 = 0.5;
 /// trimmed part keeps its shape.
 const MOSTLY_MET: f64 = 0.75;
 /// Of parts of which the smaller meets the other by less than this share, each has a piece that the other lacks,
-pub(super) const OVERHANGS: f64 = 0.95;
+pub(crate) const OVERHANGS: f64 = 0.95;
 /// unless more than this share lies neither on the other part nor beyond its borders.
-pub(super) const ELSEWHERE: f64 = 0.03;
+pub(crate) const ELSEWHERE: f64 = 0.03;
 /// A remainder of so many tolerances is that of a different part where most of the area exceeds the tolerance.
 const DIFFERENT: f64 = 6.0;
 /// Distances up to so many times the faceting, or [`UNREMARKABLE`] of the tolerance, mean nothing at most of the
 /// area.
-pub(super) const FACETING: f64 = 3.0;
+pub(crate) const FACETING: f64 = 3.0;
 const SAME_SHARE: f64 = 0.8;
 /// The mean of how far holes lie off is known to so many of its standard errors.
 const SURELY: f64 = 3.0;
@@ -239,7 +239,7 @@ impl ShapeStatement {
     }
 
     /// The statement about parts that do not meet at all.
-    pub(super) fn nothing_met(tolerance: ShapeTolerance) -> Self {
+    pub(crate) fn nothing_met(tolerance: ShapeTolerance) -> Self {
         Self {
             kind: ShapeKind::Different,
             tolerance,

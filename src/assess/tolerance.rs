@@ -3,6 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::coverage::overlap_limit;
 use crate::registration::Surface;
 
 /// The largest offset of two sheets in thicknesses: from one skin to the other it is one, the parts' thicknesses may
@@ -19,13 +20,17 @@ const SHARE_OF_SMALL: f64 = 0.02;
 /// Remainder that is accepted at least, in millimetres.
 const REMAINDER_LEAST: f64 = 1.0;
 /// This share of what may remain is unremarkable whatever the facets are.
-pub(super) const UNREMARKABLE: f64 = 0.1;
+pub(crate) const UNREMARKABLE: f64 = 0.1;
 
 /// Distance within which the parts are compared, as a share of the target's diagonal and in tolerances of
 /// springback, and borders, in tolerances.
 const REACH: f64 = 0.03;
 const SPRINGBACK_REACH: f64 = 3.0;
 const BORDER_REACH: f64 = 8.0;
+/// Borders are looked for under first poses within this share of the diagonal: they are that good.
+const FIRST_BORDER_REACH: f64 = 0.03;
+/// Borders are looked for within this share of the diagonal while a pose is refined: a door slides so far.
+const REFINED_BORDER_REACH: f64 = 0.015;
 
 /// Surfaces that lie farther apart than before by so many times what they lay apart and what facets leave open
 /// lie elsewhere.
@@ -125,20 +130,26 @@ impl ShapeTolerance {
 
 /// What a pair is compared by under poses of one scale, in target length units.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Distances {
-    pub(super) tolerance: ShapeTolerance,
+pub(crate) struct Distances {
+    pub(crate) tolerance: ShapeTolerance,
     /// Surfaces within it are compared,
-    pub(super) reach: f64,
+    pub(crate) reach: f64,
     /// and borders within this.
-    pub(super) near: f64,
+    pub(crate) border_reach: f64,
+    /// Borders are looked for within it under first poses,
+    pub(crate) first_border_reach: f64,
+    /// and within it while a pose is refined.
+    pub(crate) refined_border_reach: f64,
+    /// Surfaces within it leave a motion free: what overlaps, and what springback explains.
+    pub(crate) free_limit: f64,
     /// Faceting of both meshes and the allowance: distances of this size mean nothing.
-    pub(super) noise: f64,
+    pub(crate) noise: f64,
     /// The largest offset between two skins of one sheet; what is larger is a difference of the shapes.
     pub(super) most_offset: f64,
 }
 
 impl Distances {
-    pub(super) fn of(
+    pub(crate) fn of(
         source: &Surface,
         target: &Surface,
         scale: f64,
@@ -152,7 +163,11 @@ impl Distances {
         Self {
             tolerance,
             reach,
-            near: (BORDER_REACH * tolerance.remainder).min(reach),
+            border_reach: (BORDER_REACH * tolerance.remainder).min(reach),
+            first_border_reach: FIRST_BORDER_REACH * diagonal,
+            refined_border_reach: REFINED_BORDER_REACH * diagonal,
+            free_limit: overlap_limit(source, target, scale, settings.allowance)
+                .max(tolerance.springback),
             noise: facets.max(NOTHING * tolerance.remainder) + settings.allowance,
             most_offset: settings
                 .thickness
@@ -162,7 +177,7 @@ impl Distances {
 
     /// How much farther apart than `gap` surfaces may lie and still lie as close: a share of what may remain,
     /// but little where they lie as close as their facets allow, since what lies off is elsewhere then.
-    pub(super) fn little_more(&self, share: f64, gap: f64) -> f64 {
+    pub(crate) fn little_more(&self, share: f64, gap: f64) -> f64 {
         let remainder = self.tolerance.remainder;
         (share * remainder).min(OFF * (gap + self.noise))
     }
@@ -170,7 +185,7 @@ impl Distances {
 
 /// Whether the source is the smaller part, by area, under a pose of this scale: the smaller part's nodes and
 /// borders are the ones that are followed.
-pub(super) fn is_source_smaller(source: &Surface, target: &Surface, scale: f64) -> bool {
+pub(crate) fn is_source_smaller(source: &Surface, target: &Surface, scale: f64) -> bool {
     source.measures().area * scale * scale <= AS_LARGE * target.measures().area
 }
 

@@ -3,11 +3,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::aside::outline_aside_of_holes;
 use super::borders::{BorderPair, Borders, PairKind};
 use super::contact::quantile;
 use super::evidence::PoseEvidence;
 use super::fit::Fit;
+use super::outline_shift::outline_aside_of_holes;
 use super::stretch;
 use super::tolerance::ShapeTolerance;
 use crate::geometry::Point3;
@@ -64,7 +64,7 @@ pub(super) fn other_trim(
 
 /// The fit of the evidence. Borders that do not say where the part belongs are taken out of it; `limit` is how far
 /// they may lie apart. O(places).
-pub(super) fn trusted_fit(evidence: &mut PoseEvidence<'_>, limit: f64) -> Fit {
+pub(crate) fn trusted_fit(evidence: &mut PoseEvidence<'_>, limit: f64) -> Fit {
     match Outlines::of(evidence, limit) {
         Some(outlines) if outlines.share_apart() > MOST_APART => {
             evidence.borders = outlines.trusted();

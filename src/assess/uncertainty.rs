@@ -28,6 +28,9 @@ const BEND_SHARE: f64 = 0.3;
 /// Bends that are so many times what remains are bends.
 const CLEARLY_BENT: f64 = 2.0;
 
+/// A direction is one of the part's own within about 37°: cosine of the angle between them.
+const ALIKE: f64 = 0.8;
+
 /// A turn about the centre and a shift, in the target's frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct SmallMotion {
@@ -171,7 +174,6 @@ impl PoseUncertainty {
 }
 
 fn along(source: &Surface, pose: &Similarity, direction: &Vector3) -> PartDirection {
-    const ALIKE: f64 = 0.8;
     let axes = source.measures().principal_axes;
     let names = [
         PartDirection::Along,
@@ -412,7 +414,7 @@ mod tests {
 
     fn uncertainty(source: &Surface, target: &Surface, pose: &Similarity) -> PoseUncertainty {
         let settings = AssessSettings::default();
-        let found = statements(source, target, pose, &settings);
+        let found = statements([source, target], pose, &settings);
         found.uncertainty.unwrap()
     }
 
@@ -443,14 +445,14 @@ mod tests {
             ..AssessSettings::default()
         };
         let still = Similarity::identity();
-        let stated = statements(&flat, &flat, &still, &thick)
+        let stated = statements([&flat, &flat], &still, &thick)
             .uncertainty
             .unwrap();
         assert_eq!(stated.unknown_offset, 0.8);
         assert!((stated.largest - 0.8).abs() < 0.05, "{stated:?}");
         assert_eq!(stated.along, PartDirection::Through);
         let part = gutter(0.3, 0.0);
-        let curved = statements(&part, &part, &still, &thick)
+        let curved = statements([&part, &part], &still, &thick)
             .uncertainty
             .unwrap();
         assert_eq!(curved.unknown_offset, 0.0);

@@ -8,19 +8,18 @@ use serde::{Deserialize, Serialize};
 use super::load::LoadedPart;
 use super::reduce::Levels;
 use super::{PipelineError, millis_since};
-use crate::assess::{
-    self, AlternativeStatements, AssessSettings, Assessment, HeldPose, PulledAside,
-};
+use crate::assess::{self, AlternativeStatements, AssessSettings, Assessment};
 use crate::geometry::serial::shared;
 use crate::geometry::{Similarity, TriMesh};
-use crate::monitor::{Cancelled, Monitor};
+use crate::monitor::Monitor;
 use crate::registration::starts::{self, Start};
 use crate::registration::{
-    self, Alternative, MatchInput, MatchMonitor, MatchOutcome, MatchSettings, Method, StartMethod,
-    StartSettings, Surface, Termination,
+    self, MatchInput, MatchMonitor, MatchOutcome, MatchSettings, StartMethod, StartSettings,
+    Surface,
 };
 use crate::role::{PerRole, Role};
 pub use crate::settings::MatchRecipe;
+use crate::settling;
 use crate::simplify::SimplifySettings;
 use crate::units::LengthUnit;
 
@@ -174,7 +173,7 @@ pub fn match_parts<'a>(
     };
     monitor.check()?;
     let begin_settle = Instant::now();
-    settle(&mut outcome, [source, target], &settings, &placing, monitor)?;
+    settling::settle(&mut outcome, [source, target], &settings, &placing, monitor)?;
     times.settle_ms = millis_since(begin_settle);
     monitor.check()?;
     times.align_ms = prepare_ms + outcome.timings.align.as_secs_f64() * 1e3;
@@ -290,99 +289,6 @@ fn assess_settings(parts: PerRole<&LoadedPart>, settings: &MatchSettings) -> Ass
         n_target_errors: crash.model.diagnostics.n_geometry_errors(),
         ..AssessSettings::default()
     }
-}
-
-/// The last step of a pose that was refined on the full meshes: borders and holes hold what the surfaces
-/// leave free.
-pub(super) fn settle(
-    outcome: &mut MatchOutcome,
-    [source, target]: [&Surface; 2],
-    settings: &MatchSettings,
-    check: &AssessSettings,
-    monitor: &Monitor,
-) -> Result<(), Cancelled> {
-    let is_searched = settings.refine_on_full && settings.method != Method::Umeyama;
-    if !is_searched || outcome.termination == Termination::Stopped {
-        return Ok(());
-    }
-    if let Some(pose) = outcome.with_all_pairs.take() {
-        let poses = [&outcome.target_from_source, &pose];
-        if assess::is_better_with_all_pairs(source, target, poses, check) {
-            outcome.target_from_source = pose;
-        }
-    }
-    monitor.check()?;
-    hold(outcome, [source, target], check, monitor)?;
-    monitor.check()?;
-    if let Some(chosen) = assess::chosen_by_shape(source, target, outcome, check, monitor)? {
-        take(outcome, chosen);
-    }
-    monitor.check()?;
-    if let Some(placed) = assess::placed_by_holes(source, target, outcome, check, monitor)? {
-        take(outcome, placed);
-    }
-    monitor.check()?;
-    if let Some(placed) = assess::placed_as_a_whole(source, target, outcome, check, monitor)? {
-        take(outcome, placed);
-    }
-    monitor.check()?;
-    // Both hands are compared where their surfaces lie closest.
-    if let Some(ratio) = assess::hand_by_borders(source, target, outcome, check, monitor)? {
-        outcome.mirror_check.score_ratio = Some(ratio);
-    }
-    monitor.check()?;
-    let rough = outcome.target_from_source;
-    if let Some(pose) = assess::without_bend(source, target, &rough, check)
-        && assess::pulled_aside(source, target, [&rough, &pose], false, check).is_none()
-    {
-        outcome.target_from_source = pose;
-    }
-    monitor.check()?;
-    if check.remove_offset
-        && let Some(pose) =
-            assess::without_offset(source, target, &outcome.target_from_source, check)
-    {
-        outcome.target_from_source = pose;
-    }
-    Ok(())
-}
-
-/// Moves the pose to where borders and holes hold it, unless that pulls it aside of where the surfaces lie on each other.
-fn hold(
-    outcome: &mut MatchOutcome,
-    [source, target]: [&Surface; 2],
-    check: &AssessSettings,
-    monitor: &Monitor,
-) -> Result<(), Cancelled> {
-    let found = outcome.target_from_source;
-    let aside = |pose: &Similarity, surfaces_hold| {
-        assess::pulled_aside(source, target, [&found, pose], surfaces_hold, check)
-    };
-    if let Some(held) = assess::held_by_borders(source, target, outcome, check, monitor)? {
-        match aside(&held.target_from_source, false) {
-            None => take(outcome, held),
-            Some(PulledAside::Rival) => {
-                let rival = Alternative {
-                    target_from_source: held.target_from_source,
-                    score_ratio: 1.0,
-                    start: outcome.winner,
-                };
-                outcome.alternatives.insert(0, rival);
-            }
-            Some(PulledAside::Worse) => {}
-        }
-    } else if let Some(pose) = assess::settled(source, target, &found, check)
-        && aside(&pose, true).is_none()
-    {
-        outcome.target_from_source = pose;
-    }
-    Ok(())
-}
-
-/// Another pose becomes the result, with the others beside it.
-fn take(outcome: &mut MatchOutcome, pose: HeldPose) {
-    outcome.target_from_source = pose.target_from_source;
-    outcome.alternatives = pose.alternatives;
 }
 
 /// The first poses of "Align surface normals": centroids and mean normals aligned, both signs,

@@ -5,6 +5,7 @@ use shapematch::geometry::{Point3, Pose, Similarity, TriMesh, Vector3};
 use shapematch::monitor::Monitor;
 use shapematch::registration::*;
 use shapematch::samples::disturb;
+use shapematch::settling::*;
 use shapematch::text::Lengths;
 use shapematch::units::LengthUnit;
 
@@ -459,9 +460,12 @@ fn error_of(part: &TriMesh, target: &TriMesh, offset: f64) -> f64 {
         thickness: Some(1.0),
         ..AssessSettings::default()
     };
-    let held = held_by_borders(&source, &target, &outcome, &settings, &Monitor::silent());
-    let pose = held.unwrap().map(|held| held.target_from_source);
-    let pose = pose.or_else(|| settled(&source, &target, &outcome.target_from_source, &settings));
+    let monitor = Monitor::silent();
+    let context = PairContext::new([&source, &target], &settings, &monitor);
+    let held = held_by_borders(&context, &outcome).unwrap();
+    let pose = held.map(|held| held.target_from_source);
+    let refined = || refined_with_borders(&context, &outcome.target_from_source).unwrap();
+    let pose = pose.or_else(refined);
     let pose = pose.unwrap_or(outcome.target_from_source);
     worst_node(&stamped, &truth, &pose)
 }
@@ -500,7 +504,8 @@ fn that_more_of_both_parts_overlaps_tells_no_row_of_waves_from_the_next() {
     let silent = Monitor::silent();
     let mut outcome = matched(&source, &target);
     let settings = AssessSettings::default();
-    let chosen = chosen_by_shape(&source, &target, &outcome, &settings, &silent).unwrap();
+    let context = PairContext::new([&source, &target], &settings, &silent);
+    let chosen = chosen_by_shape(&context, &outcome).unwrap();
     let chosen = chosen.unwrap();
     outcome.target_from_source = chosen.target_from_source;
     outcome.alternatives = chosen.alternatives;
@@ -531,15 +536,19 @@ fn a_bend_does_not_push_a_curved_strip_along_itself() {
     };
     let target = Surface::new(&strip(60, 0.0, 0.0), "target").unwrap();
     let source = Surface::new(&strip(66, 60.0, 2.0), "source").unwrap();
-    let settings = AssessSettings::default();
+    let (settings, monitor) = (AssessSettings::default(), Monitor::silent());
+    let unbent = |source: &Surface, pose: &Similarity| {
+        let context = PairContext::new([source, &target], &settings, &monitor);
+        without_bend(&context, pose).unwrap()
+    };
     let off = |pose: &Similarity| pose.translation.x.abs();
     for shift in [-8.0, 8.0] {
         let pose = Similarity::from_translation(Vector3::new(shift, 0.0, 0.0));
-        let found = without_bend(&source, &target, &pose, &settings).unwrap();
+        let found = unbent(&source, &pose).unwrap();
         assert!(off(&found) < 1.0, "{found:?}");
     }
     let plain = Surface::new(&strip(66, 60.0, 0.0), "source").unwrap();
-    let found = without_bend(&plain, &target, &Similarity::identity(), &settings);
+    let found = unbent(&plain, &Similarity::identity());
     assert_eq!(found, None);
 }
 
@@ -572,8 +581,9 @@ fn a_twist_does_not_turn_a_bowed_panel_about_its_normal() {
         off(&closest),
         off(&all)
     );
-    let settings = AssessSettings::default();
-    let is_better = |poses| is_better_with_all_pairs(&source, &target, poses, &settings);
+    let (settings, monitor) = (AssessSettings::default(), Monitor::silent());
+    let context = PairContext::new([&source, &target], &settings, &monitor);
+    let is_better = |poses| is_better_with_all_pairs(&context, poses).unwrap();
     assert!(is_better([&closest, &all]) && !is_better([&all, &closest]));
 }
 
@@ -618,7 +628,8 @@ fn a_bent_panel_is_placed_as_a_whole_wherever_its_closest_half_lies() {
     let mut outcome = matched(&stamped, &crash);
     outcome.target_from_source = Similarity::from_translation(Vector3::new(400.0, 0.0, 0.0));
     let (settings, monitor) = (AssessSettings::default(), Monitor::silent());
-    let placed = placed_as_a_whole(&stamped, &crash, &outcome, &settings, &monitor).unwrap();
+    let context = PairContext::new([&stamped, &crash], &settings, &monitor);
+    let placed = placed_as_a_whole(&context, &outcome).unwrap();
     let placed = placed.unwrap();
     assert!(off(&placed.target_from_source) < 10.0, "{placed:?}");
     // The pose before is told, as a worse one.
@@ -627,7 +638,7 @@ fn a_bent_panel_is_placed_as_a_whole_wherever_its_closest_half_lies() {
     assert!(before.score_ratio > 1.4, "{before:?}");
     // Where the parts meet as a whole already there is nothing to do.
     outcome.target_from_source = Similarity::identity();
-    let again = placed_as_a_whole(&stamped, &crash, &outcome, &settings, &monitor).unwrap();
+    let again = placed_as_a_whole(&context, &outcome).unwrap();
     assert_eq!(again, None);
 }
 
@@ -635,7 +646,8 @@ fn a_bent_panel_is_placed_as_a_whole_wherever_its_closest_half_lies() {
 fn likely_poses(source: &Surface, target: &Surface) -> Vec<Similarity> {
     let mut outcome = matched(source, target);
     let (settings, monitor) = (AssessSettings::default(), Monitor::silent());
-    let held = held_by_borders(source, target, &outcome, &settings, &monitor).unwrap();
+    let context = PairContext::new([source, target], &settings, &monitor);
+    let held = held_by_borders(&context, &outcome).unwrap();
     if let Some(held) = held {
         outcome.target_from_source = held.target_from_source;
         outcome.alternatives = held.alternatives;
@@ -716,7 +728,8 @@ fn a_channel_whose_ends_coincide_is_as_likely_as_one_whose_walls_do() {
     let right = Similarity::identity();
     let slid = Similarity::from_translation(Vector3::new(140.0, 0.0, 0.0));
     let (settings, monitor) = (AssessSettings::default(), Monitor::silent());
-    let aside = |poses| pulled_aside(&source, &target, poses, false, &settings);
+    let context = PairContext::new([&source, &target], &settings, &monitor);
+    let aside = |poses| pulled_aside(&context, poses, Remainder::MayGrow).unwrap();
     assert_eq!(aside([&right, &slid]), Some(PulledAside::Rival));
     assert_eq!(aside([&slid, &right]), None);
     // The pose under which the walls lie on each other is the result, whichever covers more.
@@ -728,7 +741,7 @@ fn a_channel_whose_ends_coincide_is_as_likely_as_one_whose_walls_do() {
         score_ratio: 7.0,
         start: outcome.winner,
     }];
-    let chosen = chosen_by_shape(&source, &target, &outcome, &settings, &monitor).unwrap();
+    let chosen = chosen_by_shape(&context, &outcome).unwrap();
     let chosen = chosen.unwrap();
     let off = |pose: &Similarity| pose.max_displacement(&right, &source.mesh().aabb().corners());
     assert!(off(&chosen.target_from_source) < 5.0, "{chosen:?}");
@@ -738,4 +751,33 @@ fn a_channel_whose_ends_coincide_is_as_likely_as_one_whose_walls_do() {
         (off(&rival.target_from_source) - 140.0).abs() < 5.0,
         "{rival:?}"
     );
+}
+
+#[test]
+fn every_step_that_moves_a_pose_hears_a_cancel() {
+    let [source, target] = [9.0, 7.0].map(|pitch| {
+        let mesh = pan(pitch, 0.0, everywhere);
+        Surface::new(&mesh, "source").unwrap()
+    });
+    let mut outcome = matched(&source, &target);
+    let before = outcome.clone();
+    let (settings, monitor) = (AssessSettings::default(), Monitor::silent());
+    monitor.request_cancel();
+    let context = PairContext::new([&source, &target], &settings, &monitor);
+    let pose = &before.target_from_source;
+    let poses = [pose, &Similarity::identity()];
+    assert!(is_better_with_all_pairs(&context, poses).is_err());
+    assert!(held_by_borders(&context, &before).is_err());
+    assert!(refined_with_borders(&context, pose).is_err());
+    assert!(pulled_aside(&context, poses, Remainder::MayGrow).is_err());
+    assert!(chosen_by_shape(&context, &before).is_err());
+    assert!(placed_by_holes(&context, &before).is_err());
+    assert!(placed_as_a_whole(&context, &before).is_err());
+    assert!(hand_by_borders(&context, &before).is_err());
+    assert!(without_bend(&context, pose).is_err());
+    assert!(without_offset(&context, pose).is_err());
+    let (surfaces, as_usual) = ([&source, &target], MatchSettings::default());
+    let settled = settle(&mut outcome, surfaces, &as_usual, &settings, &monitor);
+    assert!(settled.is_err());
+    assert_eq!(outcome.target_from_source, before.target_from_source);
 }

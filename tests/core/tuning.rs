@@ -43,6 +43,12 @@ const MODULES: &[(&str, &str, &str)] = &[
          `tests/bench/RESULTS.md`.",
     ),
     (
+        "settling",
+        "The last steps of a match",
+        "Set on random shapes of the sample parts and on families of sheet parts that are unlike them; the figures \
+         are in `tests/bench/RESULTS.md`.",
+    ),
+    (
         "simplify",
         "Reduction",
         "Measured on the car floor of 34,808 triangles against a plain textbook implementation \

@@ -6,12 +6,12 @@ use std::time::Instant;
 use crate::assess::{self, AssessSettings, Assessment, PoseKind, ShapeKind, Verdict};
 use crate::geometry::Similarity;
 use crate::monitor::Monitor;
-use crate::pipeline::match_parts::settle;
 use crate::pipeline::{PipelineError, millis_since};
 use crate::registration::{self, MatchInput, MatchSettings, Surface};
 use crate::samples::SamplePart;
 use crate::samples::scenario::{Scenario, ScenarioPair};
 use crate::search::ClosestPoint as _;
+use crate::settling::settle;
 use crate::text::Lengths;
 
 /// What is run.

@@ -1,22 +1,24 @@
 //! The last step of a pose: where surfaces alone leave it free to slide, borders and holes hold it, and an
 //! offset of the sheets does not push it aside.
 
-use super::borders::{BorderComparison, Borders, HOLES_THAT_HOLD};
-use super::contact::{ContactSearch, MAX_NODES, quantile};
-use super::evidence::EvidenceSearch;
-use super::tolerance::{AssessSettings, Distances};
-use super::trims;
+use super::context::PairContext;
+use crate::assess::borders::{BorderComparison, Borders, HOLES_THAT_HOLD};
+use crate::assess::contact::{MAX_NODES, quantile};
+use crate::assess::evidence::EvidenceSearch;
+use crate::assess::tolerance::Distances;
+use crate::assess::trims;
 use crate::geometry::Similarity;
+use crate::monitor::Cancelled;
 use crate::registration::Surface;
 
 /// Steps that are made at most.
 const STEPS: usize = 6;
 /// The last step was made if it moves the part by less than this share of the facets of the borders.
 const STILL: f64 = 0.02;
-/// Borders are looked for within this share of the diagonal: a door slides so far.
-const BORDER_SHARE: f64 = 0.015;
-/// Borders must lie beside each other along this share of the smaller part's, unless holes hold it: the outline of a part
-/// that is not trimmed yet lies beside no other.
+/// Borders are looked for at least this many times as far away as they may lie apart in the end.
+const LEAST_REACH: f64 = 3.0;
+/// Borders must lie beside each other along this share of the smaller part's, unless holes hold it: the outline of a
+/// part that is not trimmed yet lies beside no other.
 const LEAST_PAIRED: f64 = 0.3;
 /// The misfit of the borders must shrink at least to this share, or the distance of the surfaces while no fewer
 /// borders lie beside each other: those of a bent part fit nowhere.
@@ -29,14 +31,11 @@ const LITTLE_GAP: f64 = 0.5;
 /// The pose moved so that surfaces, borders and holes fit together; `None` where that would move it by
 /// no more than the borders are cut into facets, where the borders do not say where the part belongs (parts
 /// that are trimmed differently), or where neither they nor the surfaces fit better. O(steps · nodes · log triangles).
-pub fn settled(
-    source: &Surface,
-    target: &Surface,
+pub fn refined_with_borders(
+    context: &PairContext<'_>,
     pose: &Similarity,
-    settings: &AssessSettings,
-) -> Option<Similarity> {
-    let settling = Settling::new([source, target], pose.scale, settings, MAX_NODES);
-    settling.settled(pose, Least::Facets)
+) -> Result<Option<Similarity>, Cancelled> {
+    Refinement::new(context, pose.scale, MAX_NODES).refined(pose, Least::Facets)
 }
 
 /// The smallest first step with which a pose is moved at all.
@@ -49,75 +48,85 @@ pub(super) enum Least {
 }
 
 /// What moving poses of a pair needs: both borders are prepared once for all of them.
-pub(super) struct Settling<'a> {
-    surfaces: [&'a Surface; 2],
+pub(super) struct Refinement<'a> {
+    context: &'a PairContext<'a>,
     borders: BorderComparison<'a>,
     distances: Distances,
     max_nodes: usize,
 }
 
-impl<'a> Settling<'a> {
+impl<'a> Refinement<'a> {
     /// For poses of this scale; about `max_nodes` nodes of the smaller part are looked at.
-    pub(super) fn new(
-        surfaces: [&'a Surface; 2],
-        scale: f64,
-        settings: &AssessSettings,
-        max_nodes: usize,
-    ) -> Self {
-        let near = BORDER_SHARE * surfaces[1].measures().diagonal;
-        Self::within(surfaces, scale, settings, max_nodes, near)
+    pub(super) fn new(context: &'a PairContext<'a>, scale: f64, max_nodes: usize) -> Self {
+        let reach = context.distances(scale).refined_border_reach;
+        Self::within(context, scale, max_nodes, reach)
     }
 
-    /// [`Settling::new`] with borders looked for within at least `near`.
-    pub(super) fn within(
-        surfaces: [&'a Surface; 2],
+    /// [`Refinement::new`] for first poses, whose borders lie farther apart.
+    pub(super) fn of_first_poses(
+        context: &'a PairContext<'a>,
         scale: f64,
-        settings: &AssessSettings,
         max_nodes: usize,
-        near: f64,
     ) -> Self {
-        let [source, target] = surfaces;
-        let distances = Distances::of(source, target, scale, settings);
-        let near = near.max(3.0 * distances.tolerance.remainder);
+        let reach = context.distances(scale).first_border_reach;
+        Self::within(context, scale, max_nodes, reach)
+    }
+
+    /// With borders looked for within at least `reach`.
+    fn within(context: &'a PairContext<'a>, scale: f64, max_nodes: usize, reach: f64) -> Self {
+        let distances = context.distances(scale);
+        let reach = reach.max(LEAST_REACH * distances.tolerance.remainder);
         Self {
-            surfaces,
-            borders: BorderComparison::new(surfaces, scale, near),
+            context,
+            borders: context.borders(scale, reach),
             distances,
             max_nodes,
         }
     }
 
-    /// [`settled`], from this first step on.
-    pub(super) fn settled(&self, pose: &Similarity, least: Least) -> Option<Similarity> {
-        self.settled_if(pose, least, BETTER)
+    /// [`refined_with_borders`], from this first step on.
+    pub(super) fn refined(
+        &self,
+        pose: &Similarity,
+        least: Least,
+    ) -> Result<Option<Similarity>, Cancelled> {
+        self.refined_if(pose, least, BETTER)
     }
 
-    /// [`settled`], also where the surfaces come only a little closer: how close they may come under this pose.
-    pub(super) fn closest(&self, pose: &Similarity) -> Option<Similarity> {
-        self.settled_if(pose, Least::Facets, 1.0)
+    /// [`refined_with_borders`], also where the surfaces come only a little closer: how close they may come under
+    /// this pose.
+    pub(super) fn closest(&self, pose: &Similarity) -> Result<Option<Similarity>, Cancelled> {
+        self.refined_if(pose, Least::Facets, 1.0)
     }
 
-    /// [`Settling::settled`] if the distance of the surfaces shrinks to a share of this, or the misfit of the borders.
-    fn settled_if(&self, pose: &Similarity, least: Least, closer: f64) -> Option<Similarity> {
+    /// [`Refinement::refined`] if the distance of the surfaces shrinks to a share of this, or the misfit of the
+    /// borders.
+    fn refined_if(
+        &self,
+        pose: &Similarity,
+        least: Least,
+        closer: f64,
+    ) -> Result<Option<Similarity>, Cancelled> {
         let Distances {
             tolerance,
             reach,
             noise,
             ..
         } = self.distances;
-        let source = self.surfaces[0];
-        let corners = source.mesh().aabb().corners();
-        let contacts = ContactSearch::new(self.surfaces, pose.scale, reach, self.max_nodes);
+        let contacts = self.context.contacts(pose.scale, reach, self.max_nodes);
         let mut search = EvidenceSearch::new(contacts, &self.borders, &self.distances);
         let mut moved = *pose;
         let mut first = None;
         let mut is_still = false;
         for step in 0..=STEPS {
-            let mut evidence = search.at(&moved)?;
+            self.context.check()?;
+            let Some(mut evidence) = search.at(&moved) else {
+                break;
+            };
             let share = evidence.borders.share();
             let n_holes = evidence.borders.holes.len();
             if share < LEAST_PAIRED && n_holes < HOLES_THAT_HOLD {
-                return None;
+                break;
             }
             let facets = evidence.borders.unremarkable();
             let misfit = misfit(&evidence.borders);
@@ -128,18 +137,20 @@ impl<'a> Settling<'a> {
                 let most = AS_CLOSE * first_gap + noise + little;
                 let fits = misfit < tolerance.remainder + facets && gap < most;
                 let is_closer = gap < closer * first_gap && share >= first_share;
-                return (fits && misfit < BETTER * first_misfit || is_closer).then_some(moved);
+                let is_better = fits && misfit < BETTER * first_misfit || is_closer;
+                return Ok(is_better.then_some(moved));
             }
             let limit = evidence.borders.limit(&tolerance);
             let next = trims::trusted_fit(&mut evidence, limit).corrected(&evidence);
+            let source = self.context.source;
             if step == 0 && least == Least::Facets && largest_motion(source, pose, &next) <= facets
             {
-                return None;
+                break;
             }
-            is_still = next.max_displacement(&moved, &corners) < STILL * facets;
+            is_still = self.context.displacement(&next, &moved) < STILL * facets;
             moved = next;
         }
-        None
+        Ok(None)
     }
 }
 

@@ -4,36 +4,40 @@
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 
-use super::border_curve::{Place, places};
-use super::contact::solve;
-use super::sliding::{FreeMotion, FreeMotionKind};
-use super::tolerance::is_source_smaller;
+use super::context::PairContext;
+use crate::assess::border_curve::{Place, places};
+use crate::assess::contact::solve;
+use crate::assess::free_motion::{FreeMotion, FreeMotionKind};
+use crate::assess::tolerance::is_source_smaller;
 use crate::geometry::{Aabb, Point3, Rotation, Similarity, Vector3};
+use crate::monitor::Cancelled;
 use crate::registration::Surface;
 use crate::search::{FeatureGrid, GridSettings};
 
 /// Places along the borders of the smaller part, of which half lie on holes where there are any.
 const N_PLACES: usize = 128;
-/// Of these so many, spread over all borders, sort the poses of the lattice, and then the best of them.
+/// Of these so many, spread over all borders, sort the poses of the lattice,
 const N_FIRST: usize = 16;
+/// and so many the best of them.
 const N_SECOND: usize = 48;
 /// Places along the borders of the larger part.
 const N_MODEL_PLACES: usize = 12_000;
 /// Distance beyond which borders have nothing to do with each other, as a share of the larger part's
 /// diagonal; the lattice is as fine.
 const CUT: f64 = 0.02;
-/// Of a motion in one direction so many times finer: a lattice that steps over a hole finds its other side.
-const FINER_ALONG_ONE: f64 = 8.0;
-/// Shares of it in the rounds after the first.
+/// Shares of [`CUT`] in the rounds in which poses of the lattice are refined.
 const CUTS: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
+/// The lattice of a motion in one direction is so many times finer: one that steps over a hole finds its other side.
+const FINER_ALONG_ONE: f64 = 8.0;
 /// Steps of each round.
 const N_STEPS: usize = 3;
 /// Share of the smaller part that may lie beside the other one.
 const BESIDE: f64 = 0.3;
-/// Poses of the lattice that are compared at more places, that are refined, and that are refined to the
-/// end.
+/// Poses of the lattice that are compared at more places,
 const MOST_SORTED: usize = 6000;
+/// of these the ones that are refined,
 const MOST_REFINED: usize = 600;
+/// and of those the ones that are refined to the end.
 const MOST_FINISHED: usize = 120;
 /// Largest number of poses of the lattice; it is made coarser where it would have more.
 const MOST_POSES: f64 = 400_000.0;
@@ -83,13 +87,14 @@ struct Axis {
 /// Poses of the source along `free` from `pose`, those whose borders fit best first, at most `n` of them and
 /// no two near each other. Empty where a part has no borders or the motion is of no known kind.
 /// O(poses of the lattice).
-pub(super) fn slid(
-    source: &Surface,
-    target: &Surface,
+pub(super) fn poses_along(
+    context: &PairContext<'_>,
     pose: &Similarity,
     free: &FreeMotion,
     n: usize,
-) -> Vec<Similarity> {
+) -> Result<Vec<Similarity>, Cancelled> {
+    context.check()?;
+    let PairContext { source, target, .. } = *context;
     let moves_source = is_source_smaller(source, target, pose.scale);
     let still = Similarity::identity();
     let (data, model) = if moves_source {
@@ -98,13 +103,13 @@ pub(super) fn slid(
         ((target, &still), (source, pose))
     };
     let Some(search) = BorderSearch::new(data, model) else {
-        return Vec::new();
+        return Ok(Vec::new());
     };
     let axes = axes(free, [box_of(data), box_of(model)], search.cut);
     if axes.is_empty() {
-        return Vec::new();
+        return Ok(Vec::new());
     }
-    let found = search.run(&axes, n);
+    let found = search.run(&axes, n, context)?;
     let posed = found.into_iter().map(|motion| {
         if moves_source {
             motion.after(pose)
@@ -112,7 +117,7 @@ pub(super) fn slid(
             motion.inverse().after(pose)
         }
     });
-    posed.collect()
+    Ok(posed.collect())
 }
 
 fn box_of((surface, pose): (&Surface, &Similarity)) -> Aabb {
@@ -269,7 +274,12 @@ impl BorderSearch {
         })
     }
 
-    fn run(&self, axes: &[Axis], n: usize) -> Vec<Similarity> {
+    fn run(
+        &self,
+        axes: &[Axis],
+        n: usize,
+        context: &PairContext<'_>,
+    ) -> Result<Vec<Similarity>, Cancelled> {
         let count: usize = axes.iter().map(|axis| axis.amounts.len()).product();
         let all = (0..count as u32).into_par_iter().with_min_len(256);
         let loss = |index: u32, n: usize| {
@@ -280,9 +290,11 @@ impl BorderSearch {
         let by_loss = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         let mut field: Vec<(f64, u32)> = all.map(|index| loss(index, N_FIRST)).collect();
         keep_first(&mut field, MOST_SORTED, by_loss);
+        context.check()?;
         let sorted = field.into_par_iter();
         let mut field: Vec<(f64, u32)> = sorted.map(|(_, index)| loss(index, N_SECOND)).collect();
         keep_first(&mut field, MOST_REFINED, by_loss);
+        context.check()?;
         let (first, then) = CUTS.split_at(1);
         let mut begun: Vec<(f64, [f64; 3])> = field
             .par_iter()
@@ -297,6 +309,7 @@ impl BorderSearch {
         // A stable order: equal ones stay in that of the lattice.
         begun.sort_by(|a, b| a.0.total_cmp(&b.0));
         begun.truncate(MOST_FINISHED);
+        context.check()?;
         let mut refined: Vec<Candidate> = begun
             .par_iter()
             .map(|&(_, begun)| {
@@ -325,7 +338,7 @@ impl BorderSearch {
                 distinct.push(candidate.motion);
             }
         }
-        distinct
+        Ok(distinct)
     }
 
     /// The amounts after the rounds of these shares of the cut.
@@ -478,7 +491,9 @@ fn motion(axes: &[Axis], amounts: &[f64; 3]) -> Similarity {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::assess::AssessSettings;
     use crate::geometry::TriMesh;
+    use crate::monitor::Monitor;
 
     /// A flat sheet of 60 by 40 cells of 2 mm with three holes, of which the columns from `first` on are
     /// there.
@@ -523,8 +538,10 @@ mod tests {
             moved.fold(0.0, f64::max)
         };
         assert!(off(&piece, &start) > 50.0);
+        let (settings, monitor) = (AssessSettings::default(), Monitor::silent());
         for (source, target) in [(&piece, &whole), (&whole, &piece)] {
-            let found = slid(source, target, &start, &free, 4);
+            let context = PairContext::new([source, target], &settings, &monitor);
+            let found = poses_along(&context, &start, &free, 4).unwrap();
             assert!(off(source, &found[0]) < 0.5, "{}", off(source, &found[0]));
         }
     }

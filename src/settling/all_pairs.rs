@@ -4,12 +4,11 @@
 
 use std::cmp::Ordering;
 
-use super::borders::{BorderComparison, Borders, HolePair};
-use super::contact::{ContactSearch, MAX_NODES};
-use super::held::near;
-use super::tolerance::{AssessSettings, Distances};
+use super::context::PairContext;
+use crate::assess::borders::{Borders, HolePair};
+use crate::assess::contact::MAX_NODES;
 use crate::geometry::Similarity;
-use crate::registration::Surface;
+use crate::monitor::Cancelled;
 
 /// Poses closer than this share of what may remain of the distances are one.
 const SAME: f64 = 0.2;
@@ -19,8 +18,8 @@ const CLOSER_HOLES: f64 = 0.9;
 const CLOSER_BORDERS: f64 = 0.95;
 /// What they gain at least, as a share of what may remain of the distances.
 const LEAST_GAIN: f64 = 0.3;
-/// Where holes say nothing, the surfaces lie apart by at most this share too, over 95 % of the area: a flange of another
-/// version turns a part that otherwise fits, and hardly comes closer.
+/// Where holes say nothing, the surfaces lie apart by at most this share too, over 95 % of the area: a flange of
+/// another version turns a part that otherwise fits, and hardly comes closer.
 const CLOSER_SURFACES: f64 = 0.75;
 /// The parts still meet but for this share of them.
 const AS_MUCH: f64 = 0.02;
@@ -32,30 +31,26 @@ const AS_CLOSE: f64 = 1.02;
 /// and clearly their surfaces. What only one part has pulls at all pairs, and holes and borders apart.
 /// O(border edges + nodes · log triangles).
 pub fn is_better_with_all_pairs(
-    source: &Surface,
-    target: &Surface,
+    context: &PairContext<'_>,
     [closest, all]: [&Similarity; 2],
-    settings: &AssessSettings,
-) -> bool {
-    let remainder = Distances::of(source, target, closest.scale, settings)
-        .tolerance
-        .remainder;
-    let corners = source.mesh().aabb().corners();
-    if closest.max_displacement(all, &corners) <= SAME * remainder {
-        return false;
+) -> Result<bool, Cancelled> {
+    context.check()?;
+    let distances = context.distances(closest.scale);
+    let (near, remainder) = (distances.first_border_reach, distances.tolerance.remainder);
+    if context.displacement(closest, all) <= SAME * remainder {
+        return Ok(false);
     }
-    let near = near(target);
-    let pair = [source, target];
-    let comparison = BorderComparison::new(pair, closest.scale, near);
+    let comparison = context.borders(closest.scale, near);
     let [before, after] = [closest, all].map(|pose| comparison.at(pose));
     let is_less = |a: f64, b: f64, share: f64| a < (share * b).min(b - LEAST_GAIN * remainder);
     let borders_gain = is_less(after.apart(near), before.apart(near), CLOSER_BORDERS);
     let most_of_surfaces = match by_holes(&before, &after, is_less) {
         Ordering::Greater => f64::INFINITY,
         Ordering::Equal if borders_gain => CLOSER_SURFACES,
-        _ => return false,
+        _ => return Ok(false),
     };
-    let mut contacts = ContactSearch::new(pair, closest.scale, near, MAX_NODES);
+    context.check()?;
+    let mut contacts = context.contacts(closest.scale, near, MAX_NODES);
     let mut met = |pose: &Similarity| {
         let contacts = contacts.at(pose)?;
         Some(Met {
@@ -65,11 +60,11 @@ pub fn is_better_with_all_pairs(
         })
     };
     let (Some(before), Some(after)) = (met(closest), met(all)) else {
-        return false;
+        return Ok(false);
     };
-    after.share >= before.share - AS_MUCH
+    Ok(after.share >= before.share - AS_MUCH
         && after.typical <= AS_CLOSE * before.typical
-        && after.far <= most_of_surfaces * before.far
+        && after.far <= most_of_surfaces * before.far)
 }
 
 /// How the surfaces meet under a pose.

@@ -2,13 +2,15 @@
 
 use rayon::prelude::*;
 
-use super::borders::HOLES_THAT_HOLD;
-use super::contact::{ContactSearch, FEW_NODES};
-use super::shape::{ELSEWHERE, OVERHANGS, ShapeReason, ShapeStatement};
-use super::statements::{shape_without_outlines, statements};
-use super::tolerance::{AssessSettings, Distances, UNREMARKABLE};
+use super::context::PairContext;
+use crate::assess::borders::HOLES_THAT_HOLD;
+use crate::assess::contact::{ContactSearch, FEW_NODES};
+use crate::assess::shape::{ELSEWHERE, OVERHANGS};
+use crate::assess::statements::Outlines;
+use crate::assess::tolerance::{Distances, UNREMARKABLE};
+use crate::assess::{ShapeReason, ShapeStatement};
 use crate::geometry::Similarity;
-use crate::registration::Surface;
+use crate::monitor::Cancelled;
 
 /// Where so much less of the smaller part meets the other, a pose that fits as closely does not fit as well.
 pub(super) const LITTLE_LESS: f64 = 0.02;
@@ -35,8 +37,9 @@ pub(super) fn is_much_closer(share: f64, own: f64, other: f64, noise: f64) -> bo
 pub(super) struct FewPlaces<'a>(ContactSearch<'a>);
 
 impl<'a> FewPlaces<'a> {
-    pub(super) fn new(pair: [&'a Surface; 2], scale: f64, distances: &Distances) -> Self {
-        Self(ContactSearch::new(pair, scale, distances.reach, FEW_NODES))
+    pub(super) fn new(context: &PairContext<'a>, scale: f64) -> Self {
+        let reach = context.distances(scale).reach;
+        Self(context.contacts(scale, reach, FEW_NODES))
     }
 
     /// Share of the smaller part that meets the other under a pose, and how far apart they lie there.
@@ -47,9 +50,9 @@ impl<'a> FewPlaces<'a> {
         })
     }
 
-    /// A pose with what speaks against it; where each part has a piece that the other lacks, with the share of the smaller
-    /// one that lies neither on the other nor beyond its borders.
-    /// `overhangs` says that they have one under a pose that this one is compared with.
+    /// A pose with what speaks against it; where each part has a piece that the other lacks, with the share of the
+    /// smaller one that lies neither on the other nor beyond its borders. `overhangs` says that they have one under a
+    /// pose that this one is compared with.
     pub(super) fn candidate(
         &self,
         pose: Similarity,
@@ -62,35 +65,53 @@ impl<'a> FewPlaces<'a> {
     }
 }
 
-/// Each pose with what speaks against it; `candidate` makes that of the comparison of the shapes. Where the outlines lie
-/// together under no pose and are no evidence under one of them, they are none under the others either: that they lie
-/// beside others by chance speaks against none of them.
+/// The result of a match, and other poses beside it, each with what speaks against it.
+pub(super) struct Judged {
+    pub(super) result: Candidate,
+    pub(super) candidates: Vec<Candidate>,
+}
+
+/// The result and each of the other poses with what speaks against it; `candidate` makes that of the comparison of the
+/// shapes, which may be known of the result. Where the outlines lie together under no pose and are no evidence under
+/// one of them, they are none under the others either: that they lie beside others by chance speaks against none of
+/// them.
 pub(super) fn judged(
-    [source, target]: [&Surface; 2],
-    poses: &[Similarity],
-    settings: &AssessSettings,
+    context: &PairContext<'_>,
+    (result, known): (Similarity, Option<ShapeStatement>),
+    others: &[Similarity],
     candidate: impl Fn(Similarity, &ShapeStatement) -> Candidate + Sync,
-) -> Vec<Candidate> {
-    let with_outlines = |pose: &Similarity| {
-        let shape = statements(source, target, pose, settings).shape;
-        candidate(*pose, &shape)
+) -> Result<Judged, Cancelled> {
+    let shape = |pose: &Similarity, outlines| {
+        context.check()?;
+        Ok(context.shape(pose, outlines))
     };
-    let mut all: Vec<Candidate> = poses.par_iter().map(with_outlines).collect();
+    let of_result = || {
+        let known = known.map_or_else(|| shape(&result, Outlines::Compared), Ok);
+        Ok(candidate(result, &known?))
+    };
+    let of_other = |pose: &Similarity| Ok(candidate(*pose, &shape(pose, Outlines::Compared)?));
+    let of_others = || others.par_iter().map(of_other).collect();
+    let (result, others): (Result<_, _>, Result<Vec<_>, _>) = rayon::join(of_result, of_others);
+    let mut all = others?;
+    all.insert(0, result?);
     let lie_together = all.iter().any(Candidate::has_outlines_together);
     let are_evidence = |candidate: &Candidate| !candidate.outlines_are_no_evidence;
-    if lie_together || all.iter().all(are_evidence) {
-        return all;
+    if !lie_together && !all.iter().all(are_evidence) {
+        let others = all.par_iter_mut().filter(|other| are_evidence(other));
+        others.try_for_each(|other| {
+            *other = Candidate {
+                outlines_are_no_evidence: true,
+                off: None,
+                ..candidate(other.pose, &shape(&other.pose, Outlines::LeftOut)?)
+            };
+            Ok(())
+        })?;
     }
-    let others = all.par_iter_mut().filter(|other| are_evidence(other));
-    others.for_each(|other| {
-        let shape = shape_without_outlines(source, target, &other.pose, settings);
-        *other = Candidate {
-            outlines_are_no_evidence: true,
-            off: None,
-            ..candidate(other.pose, &shape)
-        };
-    });
-    all
+    context.check()?;
+    Ok(Judged {
+        result: all.remove(0),
+        candidates: all,
+    })
 }
 
 /// A pose and what speaks against one shape under it. A bend does so under every pose.
@@ -112,25 +133,38 @@ pub(super) struct Candidate {
     /// lies neither on the other part nor beyond its borders.
     pub(super) met: f64,
     elsewhere: Option<f64>,
-    /// How far the surfaces lie apart by a bend and besides it.
-    pub(super) apart: [f64; 2],
+    /// How far the surfaces lie apart by a bend,
+    bend: f64,
+    /// and besides it.
+    pub(super) remainder: f64,
     /// A constant distance of the sheets besides.
     offset: f64,
     /// How far outlines and holes lie apart, where there are enough of both, …
-    off: Option<[f64; 2]>,
+    off: Option<BordersOff>,
     /// … and what is accepted of them.
     limit: f64,
 }
 
+/// How far borders lie apart.
+#[derive(Debug, Clone, Copy)]
+struct BordersOff {
+    outlines: f64,
+    holes: f64,
+}
+
 impl Candidate {
     pub(super) fn at(pose: Similarity, shape: &ShapeStatement, elsewhere: Option<f64>) -> Self {
-        let differences = shape.reasons.iter().filter_map(is_clear);
-        let (n_differences, n_clear) =
-            differences.fold((0, 0), |(n, clear), is| (n + 1, clear + usize::from(is)));
+        let n_that_say = |what: Evidence| {
+            let reasons = shape.reasons.iter();
+            reasons
+                .filter(|reason| Evidence::of(reason) == what)
+                .count()
+        };
+        let n_clear = n_that_say(Evidence::ClearDifference);
         let borders = &shape.borders;
         Self {
             pose,
-            n_differences,
+            n_differences: n_clear + n_that_say(Evidence::Difference),
             n_clear,
             n_holes: borders.n_holes,
             n_alone: borders.only_source + borders.only_target,
@@ -141,10 +175,14 @@ impl Candidate {
                 .any(|reason| matches!(reason, ShapeReason::Borders { .. })),
             met: shape.met,
             elsewhere,
-            apart: [shape.springback, shape.remainder],
+            bend: shape.springback,
+            remainder: shape.remainder,
             off: (borders.offset)
                 .filter(|_| borders.n_holes >= HOLES_THAT_HOLD)
-                .map(|offset| [offset, borders.worst_hole]),
+                .map(|outlines| BordersOff {
+                    outlines,
+                    holes: borders.worst_hole,
+                }),
             limit: shape.tolerance.remainder,
         }
     }
@@ -154,13 +192,15 @@ impl Candidate {
     /// may be shifted by one of them.
     pub(super) fn fits_elsewhere_as_well_as(&self, other: &Self, distances: &Distances) -> bool {
         let is_trimmed_off = self.elsewhere.is_some_and(|share| share < ELSEWHERE);
-        let mut pairs = self.apart.iter().zip(&other.apart);
-        let most = |apart: f64| AS_CLOSE * apart + distances.little_more(UNREMARKABLE, apart);
+        let is_as_close = |own: f64, other: f64| {
+            own <= AS_CLOSE * other + distances.little_more(UNREMARKABLE, other)
+        };
         is_trimmed_off
             && self.met >= LEAST_SHARED
             && self.n_differences <= other.n_differences
             && self.n_alone <= other.n_alone
-            && pairs.all(|(own, other)| *own <= most(*other))
+            && is_as_close(self.bend, other.bend)
+            && is_as_close(self.remainder, other.remainder)
     }
 
     /// How far the surfaces lie apart under this pose over how far they do under another, at least 1; `None` where
@@ -179,9 +219,9 @@ impl Candidate {
         !self.outlines_are_no_evidence && !self.outlines_lie_apart
     }
 
-    /// Whether each part has a piece here that the other lacks, and no more differs than under another pose, under which
-    /// more of the parts meets while the surfaces lie much farther apart: a piece lies on another by chance hardly ever,
-    /// while a bend and an offset explain much.
+    /// Whether each part has a piece here that the other lacks, and no more differs than under another pose, under
+    /// which more of the parts meets while the surfaces lie much farther apart: a piece lies on another by chance
+    /// hardly ever, while a bend and an offset explain much.
     pub(super) fn lies_much_closer_elsewhere_than(&self, other: &Self, noise: f64) -> bool {
         self.elsewhere.is_some_and(|share| share < ELSEWHERE)
             && (LEAST_SHARED..other.met).contains(&self.met)
@@ -203,7 +243,7 @@ impl Candidate {
 
     /// How far the surfaces lie apart by bends and besides them.
     pub(super) fn apart(&self) -> f64 {
-        self.apart[0].hypot(self.apart[1])
+        self.bend.hypot(self.remainder)
     }
 
     /// The same with a constant distance of the sheets.
@@ -226,21 +266,43 @@ impl Candidate {
         let (Some(own), Some(others)) = (self.off, other.off) else {
             return false;
         };
-        let mut pairs = own.iter().zip(&others);
-        self.n_holes >= other.n_holes && pairs.all(|(own, other)| other - own > self.limit)
+        self.n_holes >= other.n_holes
+            && others.outlines - own.outlines > self.limit
+            && others.holes - own.holes > self.limit
     }
 }
 
-/// Whether a difference is beyond doubt; `None` for a bend.
-fn is_clear(reason: &ShapeReason) -> Option<bool> {
-    match reason {
-        ShapeReason::Bent { .. } => None,
-        ShapeReason::Surface { by, limit, .. }
-        | ShapeReason::Local { by, limit, .. }
-        | ShapeReason::Borders { by, limit, .. }
-        | ShapeReason::Hole { by, limit, .. } => Some(*by > CLEARLY * limit),
-        ShapeReason::Holes { .. } => Some(true),
-        ShapeReason::HardlyMet { .. } | ShapeReason::Stretched { .. } => Some(false),
+/// What a reason against one shape says against a pose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Evidence {
+    /// Nothing: a bend is there under every pose.
+    Nothing,
+    /// The shapes differ, which facets or a bend may explain.
+    Difference,
+    /// They differ beyond doubt.
+    ClearDifference,
+}
+
+impl Evidence {
+    fn of(reason: &ShapeReason) -> Self {
+        match reason {
+            ShapeReason::Bent { .. } => Self::Nothing,
+            ShapeReason::Holes { .. } => Self::ClearDifference,
+            ShapeReason::Surface { by, limit, .. }
+            | ShapeReason::Local { by, limit, .. }
+            | ShapeReason::Borders { by, limit, .. }
+            | ShapeReason::Hole { by, limit, .. }
+                if *by > CLEARLY * limit =>
+            {
+                Self::ClearDifference
+            }
+            ShapeReason::Surface { .. }
+            | ShapeReason::Local { .. }
+            | ShapeReason::Borders { .. }
+            | ShapeReason::Hole { .. }
+            | ShapeReason::HardlyMet { .. }
+            | ShapeReason::Stretched { .. } => Self::Difference,
+        }
     }
 }
 
@@ -313,9 +375,12 @@ mod tests {
             at: Point3::origin(),
             is_mean: true,
         };
-        let at = |off, reasons: &[ShapeReason]| Candidate {
+        let at = |off: [f64; 2], reasons: &[ShapeReason]| Candidate {
             n_holes: 24,
-            off: Some(off),
+            off: Some(BordersOff {
+                outlines: off[0],
+                holes: off[1],
+            }),
             ..candidate(reasons)
         };
         let right = at([0.6, 0.4], &[]);
@@ -329,9 +394,10 @@ mod tests {
 
     #[test]
     fn a_pose_that_settles_as_close_is_as_likely_whatever_it_scored_on_the_way() {
-        let at = |springback, remainder, met| Candidate {
+        let at = |bend, remainder, met| Candidate {
             met,
-            apart: [springback, remainder],
+            bend,
+            remainder,
             ..candidate(&[])
         };
         let best = at(0.1, 0.3, 0.97);

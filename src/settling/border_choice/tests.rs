@@ -1,11 +1,14 @@
 //! Which of several poses borders and holes speak for.
 
 use super::*;
+use crate::assess::AssessSettings;
 use crate::geometry::{Point3, TriMesh};
+use crate::monitor::Monitor;
+use crate::registration::Surface;
 
 /// A pose of parts that lie on each other but for their borders.
-fn settled(held: f64, paired: f64, n_holes: usize) -> Settled {
-    Settled {
+fn refined(held: f64, paired: f64, n_holes: usize) -> Refined {
+    Refined {
         pose: Similarity::identity(),
         held,
         paired,
@@ -23,28 +26,30 @@ fn a_few_borders_hold_no_pose_unless_a_hole_is_among_them() {
     let points = [[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0]].map(Point3::from);
     let mesh = TriMesh::new(points.to_vec(), vec![[0, 1, 2]]).unwrap();
     let plate = Surface::new(&mesh, "source").unwrap();
-    let pair = Pair::new(&plate, &plate, 1.0, &AssessSettings::default());
+    let (settings, monitor) = (AssessSettings::default(), Monitor::silent());
+    let context = PairContext::new([&plate, &plate], &settings, &monitor);
+    let comparison = PoseComparison::new(&context, 1.0);
     for (result, rival, wins) in [
-        (settled(0.0, 0.3, 0), settled(0.14, 0.3, 0), false),
-        (settled(0.0, 0.3, 0), settled(0.14, 0.3, 1), true),
-        (settled(0.0, 0.3, 0), settled(0.4, 0.6, 0), true),
-        (settled(0.4, 0.6, 0), settled(0.401, 0.6, 0), false),
-        (settled(0.4, 0.6, 2), settled(0.4, 0.6, 1), false),
+        (refined(0.0, 0.3, 0), refined(0.14, 0.3, 0), false),
+        (refined(0.0, 0.3, 0), refined(0.14, 0.3, 1), true),
+        (refined(0.0, 0.3, 0), refined(0.4, 0.6, 0), true),
+        (refined(0.4, 0.6, 0), refined(0.401, 0.6, 0), false),
+        (refined(0.4, 0.6, 2), refined(0.4, 0.6, 1), false),
     ] {
-        let choice = pair.choice(&result, true, &[rival]);
+        let choice = comparison.choice(&result, true, &[rival]);
         assert_eq!(choice.is_some(), wins, "{} of {}", rival.held, result.held);
     }
 }
 
 #[test]
 fn borders_beyond_the_other_part_count_only_where_one_part_covers_the_other() {
-    let (winner, shifted) = (settled(0.8, 0.8, 4), settled(0.6, 0.6, 3));
+    let (winner, shifted) = (refined(0.8, 0.8, 4), refined(0.6, 0.6, 3));
     assert!((shifted.behind(&winner) - 0.2).abs() < 1e-12);
-    let overhanging = |pose: Settled| Settled { met: 0.9, ..pose };
+    let overhanging = |pose: Refined| Refined { met: 0.9, ..pose };
     let behind = overhanging(shifted).behind(&overhanging(winner));
     assert!(behind.abs() < 1e-12, "{behind}");
     // Those beside the other part's that lie apart count all the same.
-    let apart = Settled {
+    let apart = Refined {
         held: 0.3,
         ..overhanging(shifted)
     };

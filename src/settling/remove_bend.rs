@@ -1,14 +1,15 @@
 //! The pose of a bent part: its bends are counted as its shape and do not push the pose aside.
 
-use super::borders::{BorderComparison, LEAST_PAIRED};
-use super::contact::{ContactSearch, MAX_NODES};
-use super::evidence::EvidenceSearch;
-use super::fit::Fit;
-use super::shape::FACETING;
-use super::tolerance::{AssessSettings, Distances, UNREMARKABLE};
-use super::trims;
+use super::context::PairContext;
+use crate::assess::borders::LEAST_PAIRED;
+use crate::assess::contact::MAX_NODES;
+use crate::assess::evidence::EvidenceSearch;
+use crate::assess::fit::Fit;
+use crate::assess::shape::FACETING;
+use crate::assess::tolerance::UNREMARKABLE;
+use crate::assess::trims;
 use crate::geometry::Similarity;
-use crate::registration::Surface;
+use crate::monitor::Cancelled;
 
 /// Steps that are made at most, and the motion, as a share of the bend, below which they end.
 const STEPS: usize = 8;
@@ -25,26 +26,27 @@ const AS_MUCH: f64 = 0.01;
 /// solved together, with the borders where they hold. `None` where the part is hardly bent, or where the pose would go
 /// farther than a bend takes it. O(steps · (border edges + nodes · log triangles)).
 pub fn without_bend(
-    source: &Surface,
-    target: &Surface,
+    context: &PairContext<'_>,
     pose: &Similarity,
-    settings: &AssessSettings,
-) -> Option<Similarity> {
-    let distances = Distances::of(source, target, pose.scale, settings);
+) -> Result<Option<Similarity>, Cancelled> {
+    context.check()?;
+    let distances = context.distances(pose.scale);
     let tolerance = distances.tolerance;
-    let corners = source.mesh().aabb().corners();
-    let pair = [source, target];
-    let mut contacts = ContactSearch::new(pair, pose.scale, distances.reach, MAX_NODES);
+    let mut contacts = context.contacts(pose.scale, distances.reach, MAX_NODES);
     let hardly = (UNREMARKABLE * tolerance.remainder).max(FACETING * distances.noise);
-    if contacts.at(pose)?.typical_gap(f64::INFINITY) <= CLOSE * hardly {
-        return None;
+    let met = contacts.at(pose);
+    if met.is_none_or(|met| met.typical_gap(f64::INFINITY) <= CLOSE * hardly) {
+        return Ok(None);
     }
-    let borders = BorderComparison::new(pair, pose.scale, distances.near);
+    let borders = context.borders(pose.scale, distances.border_reach);
     let mut search = EvidenceSearch::new(contacts, &borders, &distances);
     let mut moved = *pose;
     let mut first = None;
     for step in 0..=STEPS {
-        let mut evidence = search.at(&moved)?;
+        context.check()?;
+        let Some(mut evidence) = search.at(&moved) else {
+            break;
+        };
         let fit = if evidence.borders.share() < LEAST_PAIRED {
             evidence.borders = evidence.borders.of_holes();
             Fit::of(&evidence)
@@ -57,19 +59,19 @@ pub fn without_bend(
         let (first_bend, first_left, first_share) =
             *first.get_or_insert((bend, left, contacts.share));
         if first_bend <= hardly {
-            return None;
+            break;
         }
         let next = fit.corrected(&evidence);
-        let is_still = next.max_displacement(&moved, &corners) <= STILL * first_bend;
+        let is_still = context.displacement(&next, &moved) <= STILL * first_bend;
         if is_still || step == STEPS {
-            let far = moved.max_displacement(pose, &corners);
+            let far = context.displacement(&moved, pose);
             let is_of_a_bend = far <= FARTHEST * bend
                 && bend <= first_bend.max(tolerance.springback)
                 && left <= first_left + UNREMARKABLE * tolerance.remainder
                 && contacts.share >= first_share - AS_MUCH;
-            return (step > 0 && is_of_a_bend).then_some(moved);
+            return Ok((step > 0 && is_of_a_bend).then_some(moved));
         }
         moved = next;
     }
-    None
+    Ok(None)
 }

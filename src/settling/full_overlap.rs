@@ -1,27 +1,26 @@
-//! The pose under which the parts meet as a whole. A large smooth panel that springback has bent lies closer where only a
-//! half of it lies on the other part, so that the pairs that a match keeps may take it far away from a first pose that was
-//! right.
+//! The pose under which the parts meet as a whole. A large smooth panel that springback has bent lies closer where
+//! only a half of it lies on the other part, so that the pairs that a match keeps may take it far away from a first
+//! pose that was right.
 
 use rayon::prelude::*;
 
-use super::alternatives::behind;
-use super::borders::BorderComparison;
-use super::candidate::{Candidate, FewPlaces, LITTLE_LESS, judged};
-use super::contact::{ContactSearch, FEW_NODES};
-use super::evidence::EvidenceSearch;
-use super::fit::Fit;
-use super::held::{HeldPose, MUCH_MORE, near};
-use super::shape::OVERHANGS;
-use super::statements::statements;
-use super::tolerance::{AssessSettings, Distances};
+use super::border_choice::MUCH_MORE;
+use super::candidate::{Candidate, FewPlaces, Judged, LITTLE_LESS, judged};
+use super::chosen_pose::ChosenPose;
+use super::context::PairContext;
+use crate::assess::contact::{ContactSearch, FEW_NODES};
+use crate::assess::evidence::EvidenceSearch;
+use crate::assess::fit::Fit;
+use crate::assess::shape::OVERHANGS;
+use crate::assess::statements::Outlines;
 use crate::geometry::Similarity;
-use crate::monitor::{Cancelled, Monitor};
-use crate::registration::{Extent, MatchOutcome, Surface, same_pose};
+use crate::monitor::Cancelled;
+use crate::registration::{Extent, MatchOutcome, same_pose};
 
 /// Nodes of the smaller part that first poses are compared and moved on, before the best are moved on more.
 const N_NODES: usize = 500;
-/// First poses under which the parts lie closest as a whole, and no farther apart than surfaces are compared, that are moved
-/// until all that meets lies closest.
+/// First poses under which the parts lie closest as a whole, and no farther apart than surfaces are compared, that
+/// are moved until all that meets lies closest.
 const MOST_MOVED: usize = 12;
 /// Of those so many, under which the parts lie closest as a whole, are judged.
 const MOST_JUDGED: usize = 3;
@@ -33,38 +32,34 @@ const STILL: f64 = 0.02;
 /// borders and holes.
 const ASIDE: f64 = 2.0;
 
-/// The pose under which much more of the smaller part meets the other than under that of `outcome`, or as much where the
-/// shapes differ under that one, while nothing but springback within the tolerance keeps them apart. `None` where there is
-/// none, and where the parts meet as a whole without a difference. O(first poses · nodes · log triangles).
+/// The pose under which much more of the smaller part meets the other than under that of `outcome`, or as much where
+/// the shapes differ under that one, while nothing but springback within the tolerance keeps them apart. `None` where
+/// there is none, and where the parts meet as a whole without a difference. O(first poses · nodes · log triangles).
 pub fn placed_as_a_whole(
-    source: &Surface,
-    target: &Surface,
+    context: &PairContext<'_>,
     outcome: &MatchOutcome,
-    settings: &AssessSettings,
-    monitor: &Monitor,
-) -> Result<Option<HeldPose>, Cancelled> {
+) -> Result<Option<ChosenPose>, Cancelled> {
+    context.check()?;
     let found = &outcome.target_from_source;
     if !outcome.rivals_sought || found.is_mirrored() || found.scale != 1.0 {
         return Ok(None);
     }
-    let shape = statements(source, target, found, settings).shape;
+    let shape = context.shape(found, Outlines::Compared);
     let has_nothing_open = |result: &Candidate| result.met >= OVERHANGS && !result.differs();
     if has_nothing_open(&Candidate::at(*found, &shape, None)) {
         return Ok(None);
     }
-    let pair = [source, target];
-    let distances = Distances::of(source, target, 1.0, settings);
-    let corners = source.mesh().aabb().corners();
-    let mut poses = moved_as_a_whole(pair, outcome, settings, monitor)?;
+    let distances = context.distances(1.0);
+    let mut poses = moved_as_a_whole(context, outcome)?;
     let far = ASIDE * distances.tolerance.springback;
-    poses.retain(|pose| pose.max_displacement(found, &corners) > far);
-    poses.insert(0, *found);
-    let few = FewPlaces::new(pair, 1.0, &distances);
-    let mut candidates = judged(pair, &poses, settings, |pose, shape| {
+    poses.retain(|pose| context.displacement(pose, found) > far);
+    let few = FewPlaces::new(context, 1.0);
+    let Judged {
+        result,
+        mut candidates,
+    } = judged(context, (*found, Some(shape)), &poses, |pose, shape| {
         few.candidate(pose, shape, false)
-    });
-    monitor.check()?;
-    let result = candidates.remove(0);
+    })?;
     if has_nothing_open(&result) {
         return Ok(None);
     }
@@ -75,23 +70,21 @@ pub fn placed_as_a_whole(
         other.is_one_shape && explains_more && !is_explained
     });
     candidates.sort_by(|a, b| a.apart().total_cmp(&b.apart()));
-    Ok(candidates.split_first().map(|(winner, others)| HeldPose {
-        target_from_source: winner.pose,
-        alternatives: behind(winner, others, outcome, source),
-    }))
+    let source = context.source;
+    let best = candidates.split_first();
+    Ok(best.map(|(winner, others)| ChosenPose::in_place_of(outcome, winner, others, source)))
 }
 
-/// The first poses of the match, each moved until what meets of the smaller part lies closest; those under which the parts
-/// lie closest as a whole come first.
+/// The first poses of the match, each moved until what meets of the smaller part lies closest; those under which the
+/// parts lie closest as a whole come first.
 fn moved_as_a_whole(
-    pair: [&Surface; 2],
+    context: &PairContext<'_>,
     outcome: &MatchOutcome,
-    settings: &AssessSettings,
-    monitor: &Monitor,
 ) -> Result<Vec<Similarity>, Cancelled> {
-    let [source, target] = pair;
-    let search = ContactSearch::new(pair, 1.0, near(target), N_NODES);
-    let part: Extent = source.measures().into();
+    let distances = context.distances(1.0);
+    let near = distances.first_border_reach;
+    let search = context.contacts(1.0, near, N_NODES);
+    let part: Extent = context.source.measures().into();
     let mut firsts: Vec<Similarity> = Vec::new();
     for start in &outcome.starts {
         if !firsts
@@ -101,19 +94,20 @@ fn moved_as_a_whole(
             firsts.push(start.first);
         }
     }
-    let at_first = firsts.par_iter().map(|pose| (apart(&search, pose), *pose));
-    let distances = Distances::of(source, target, 1.0, settings);
-    let mut at_first: Vec<(f64, Similarity)> = at_first.collect();
+    let at_first = firsts.par_iter().map(|pose| {
+        context.check()?;
+        Ok((apart(&search, pose), *pose))
+    });
+    let mut at_first = at_first.collect::<Result<Vec<(f64, Similarity)>, Cancelled>>()?;
     at_first.retain(|(apart, _)| *apart <= distances.reach);
-    let still = STILL * distances.tolerance.remainder;
-    let borders = BorderComparison::new(pair, 1.0, near(target));
+    let borders = context.borders(1.0, near);
     // Those that lie closest come first.
     let moved = |poses: &[Similarity], n_nodes: usize| -> Result<Vec<_>, Cancelled> {
-        let contacts = ContactSearch::new(pair, 1.0, distances.reach, n_nodes);
+        let contacts = context.contacts(1.0, distances.reach, n_nodes);
         let moved = poses.par_iter().map(|first| {
-            monitor.check()?;
+            context.check()?;
             let search = EvidenceSearch::new(contacts.clone(), &borders, &distances);
-            let pose = held_by_holes(search, first, near(target), still);
+            let pose = held_by_holes(context, search, first, near)?;
             Ok((apart(&contacts, &pose), pose))
         });
         let mut moved = moved.collect::<Result<Vec<(f64, Similarity)>, Cancelled>>()?;
@@ -148,20 +142,21 @@ fn apart(search: &ContactSearch<'_>, pose: &Similarity) -> f64 {
 /// The pose moved until the places that meet and the holes beside each other lie closest, but for bends and an offset.
 /// It ends where a step would take the part farther than holes are looked for.
 fn held_by_holes(
+    context: &PairContext<'_>,
     mut search: EvidenceSearch<'_, '_>,
     first: &Similarity,
     farthest: f64,
-    still: f64,
-) -> Similarity {
+) -> Result<Similarity, Cancelled> {
+    let still = STILL * context.distances(1.0).tolerance.remainder;
     let mut pose = *first;
     for _ in 0..STEPS {
+        context.check()?;
         let Some(mut evidence) = search.at(&pose) else {
             break;
         };
         evidence.borders = evidence.borders.of_holes();
         let next = Fit::of(&evidence).corrected(&evidence);
-        let corners = evidence.source.mesh().aabb().corners();
-        let step = next.max_displacement(&pose, &corners);
+        let step = context.displacement(&next, &pose);
         if step > farthest {
             break;
         }
@@ -170,5 +165,5 @@ fn held_by_holes(
             break;
         }
     }
-    pose
+    Ok(pose)
 }

@@ -5,23 +5,22 @@ mod hand;
 
 use rayon::prelude::*;
 
-use super::borders::{BorderComparison, Borders, HolePair, PairKind};
-use super::contact::{ContactSearch, FEW_NODES, MAX_NODES};
-use super::coverage::overlap_limit;
+use super::chosen_pose::{ChosenPose, distinct};
+use super::context::PairContext;
+use super::free_motion_search::poses_along;
 use super::holes;
-use super::settle::{Least, Settling};
-use super::shape::OVERHANGS;
-use super::slide::slid;
-use super::sliding::{FreeMotion, FreeMotionKind, weak_motion, weakest_motion};
-use super::tolerance::{AssessSettings, Distances};
+use super::refine_with_borders::{Least, Refinement};
+use crate::assess::borders::{BorderComparison, Borders, HolePair, PairKind};
+use crate::assess::contact::{FEW_NODES, MAX_NODES};
+use crate::assess::free_motion::{FreeMotion, FreeMotionKind, weak_motion, weakest_motion};
+use crate::assess::shape::OVERHANGS;
+use crate::assess::tolerance::Distances;
 use crate::geometry::Similarity;
-use crate::monitor::{Cancelled, Monitor};
-use crate::registration::{Alternative, MatchOutcome, Surface, same_pose};
+use crate::monitor::Cancelled;
+use crate::registration::{Alternative, MatchOutcome, same_pose};
 
 pub use hand::hand_by_borders;
 
-/// Borders are looked for within this share of the diagonal: first poses are that good.
-const NEAR_SHARE: f64 = 0.03;
 /// Poses whose borders are compared at most.
 const MOST_POSES: usize = 64;
 /// Poses that the search along the free motion adds.
@@ -72,37 +71,24 @@ const SAME_MET: f64 = 0.005;
 /// A pose with fewer holes and no more of anything else counts as at least so many times as bad.
 const FEWER_HOLES: f64 = 1.5;
 
-/// A pose that borders and holes hold, and what is left of the others.
-#[derive(Debug, Clone, PartialEq)]
-pub struct HeldPose {
-    /// The pose.
-    pub target_from_source: Similarity,
-    /// The other poses of the match. Where their borders fit worse than their surfaces, that is how much
-    /// worse they are.
-    pub alternatives: Vec<Alternative>,
-}
-
 /// The pose of `outcome` or another one that the match tried, whichever has its borders and holes where
 /// they belong, if the surfaces leave the pose free to slide. `None` where they do not, or where the parts have no
 /// borders beside each other.
 /// O(poses · border edges + nodes · log triangles).
 pub fn held_by_borders(
-    source: &Surface,
-    target: &Surface,
+    context: &PairContext<'_>,
     outcome: &MatchOutcome,
-    settings: &AssessSettings,
-    monitor: &Monitor,
-) -> Result<Option<HeldPose>, Cancelled> {
+) -> Result<Option<ChosenPose>, Cancelled> {
+    context.check()?;
     let found = &outcome.target_from_source;
-    let Some(free) = motion_to_search([source, target], found, settings) else {
+    let Some(free) = motion_to_search(context, found) else {
         return Ok(None);
     };
-    monitor.check()?;
-    let pair = Pair::new(source, target, found.scale, settings);
-    let Some(result) = pair.settle(found, Least::Facets) else {
+    context.check()?;
+    let comparison = PoseComparison::new(context, found.scale);
+    let Some(result) = comparison.refined(found, Least::Facets)? else {
         return Ok(None);
     };
-    monitor.check()?;
     let tried = outcome
         .starts
         .iter()
@@ -114,48 +100,50 @@ pub fn held_by_borders(
         .chain(tried)
         .take(MOST_POSES)
         .collect();
-    let roots = pair.roots(&result, &others, &free);
+    let roots = comparison.roots(&result, &others, &free);
     let mut poses = Vec::new();
     for (root, free) in &roots {
-        monitor.check()?;
-        poses.extend(slid(source, target, root, free, MOST_SLID));
+        poses.extend(poses_along(context, root, free, MOST_SLID)?);
     }
     poses.extend(&others);
     // A hole may be smaller than the search along the motion can tell.
-    if outcome.rivals_sought && holes::can_place(source, target, found) {
-        let known = (&poses[..], pair.springback);
-        poses.extend(holes::poses_unlike(source, target, known, monitor)?);
+    if outcome.rivals_sought && holes::can_place(context, found) {
+        let apart = comparison.springback();
+        poses.extend(holes::poses_unlike(context, &poses, apart)?);
     }
-    let by_borders = pair.by_borders(&poses, monitor)?;
-    let settle = |pose: &Similarity| {
-        monitor.check()?;
-        let is_likely = pair.lies_on(pose, &result);
-        Ok(is_likely.then(|| pair.settle(pose, Least::Any)).flatten())
+    let by_borders = comparison.by_borders(&poses)?;
+    let refine = |pose: &Similarity| {
+        context.check()?;
+        if comparison.lies_on(pose, &result) {
+            comparison.refined(pose, Least::Any)
+        } else {
+            Ok(None)
+        }
     };
-    let settled: Result<Vec<Option<Settled>>, Cancelled> =
-        by_borders.par_iter().map(settle).collect();
-    let settled: Vec<Settled> = settled?.into_iter().flatten().collect();
+    let refined: Result<Vec<Option<Refined>>, Cancelled> =
+        by_borders.par_iter().map(refine).collect();
+    let refined: Vec<Refined> = refined?.into_iter().flatten().collect();
     // A bent part may have been laid where it hardly fits: what fits best says how close is close.
-    let closest = settled
+    let closest = refined
         .iter()
         .filter(|other| other.met >= AS_MUCH * result.met && other.gap < result.gap)
         .min_by(|a, b| a.gap.total_cmp(&b.gap));
     let closest = closest.copied().unwrap_or(result);
-    let is_close = |pose: &Settled| pose.is_as_close_as(&closest, &pair);
-    let rivals: Vec<Settled> = settled
-        .par_iter()
-        .copied()
-        .filter_map(|pose| {
-            let closer = || pair.closer(&pose).filter(is_close);
-            is_close(&pose).then_some(pose).or_else(closer)
-        })
-        .collect();
-    let choice = pair.choice(&result, is_close(&result), &rivals);
+    let is_close = |pose: &Refined| pose.is_as_close_as(&closest, &comparison.distances);
+    let close = |pose: &Refined| {
+        if is_close(pose) {
+            return Ok(Some(*pose));
+        }
+        Ok(comparison.closer(pose)?.filter(is_close))
+    };
+    let rivals: Result<Vec<Option<Refined>>, Cancelled> = refined.par_iter().map(close).collect();
+    let rivals: Vec<Refined> = rivals?.into_iter().flatten().collect();
+    let choice = comparison.choice(&result, is_close(&result), &rivals);
     let winner = choice.unwrap_or(result);
-    let exactly = Settling::new([source, target], found.scale, settings, MAX_NODES);
-    let mut alternatives = pair.alternatives(&winner, choice.is_some(), &rivals, outcome);
-    let by_holes = settled.iter().filter(|other| !is_close(other));
-    alternatives.extend(pair.with_most_holes(&winner, by_holes, outcome.winner));
+    let exactly = Refinement::new(context, found.scale, MAX_NODES);
+    let mut alternatives = comparison.alternatives(&winner, choice.is_some(), &rivals, outcome);
+    let by_holes = refined.iter().filter(|other| !is_close(other));
+    alternatives.extend(comparison.with_most_holes(&winner, by_holes, outcome.winner));
     alternatives.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
     // What was found along the free motion has not been fitted to the surfaces.
     let least = if choice.is_some() {
@@ -163,35 +151,18 @@ pub fn held_by_borders(
     } else {
         Least::Facets
     };
-    Ok(Some(HeldPose {
-        target_from_source: exactly.settled(&winner.pose, least).unwrap_or(winner.pose),
+    let pose = exactly.refined(&winner.pose, least)?;
+    Ok(Some(ChosenPose {
+        target_from_source: pose.unwrap_or(winner.pose),
         alternatives,
     }))
 }
 
-/// Of alternatives that are the same pose the first.
-pub(super) fn distinct(alternatives: &[Alternative], source: &Surface) -> Vec<Alternative> {
-    let part = source.measures().into();
-    let mut distinct: Vec<Alternative> = Vec::new();
-    for other in alternatives {
-        let is_known =
-            |a: &Alternative| same_pose(&a.target_from_source, &other.target_from_source, &part);
-        if !distinct.iter().any(is_known) {
-            distinct.push(*other);
-        }
-    }
-    distinct
-}
-
 /// The motion along which borders and holes are looked for: what the surfaces leave free, or hardly resist where the
 /// holes say that the part lies aside.
-fn motion_to_search(
-    pair: [&Surface; 2],
-    pose: &Similarity,
-    settings: &AssessSettings,
-) -> Option<FreeMotion> {
-    let [source, target] = pair;
-    let limit = free_limit(source, target, pose.scale, settings);
+fn motion_to_search(context: &PairContext<'_>, pose: &Similarity) -> Option<FreeMotion> {
+    let PairContext { source, target, .. } = *context;
+    let limit = context.distances(pose.scale).free_limit;
     let weak = weak_motion(source, target, pose, limit);
     let has_path = |motion: FreeMotion| {
         !matches!(
@@ -199,7 +170,7 @@ fn motion_to_search(
             FreeMotionKind::Spherical | FreeMotionKind::Other
         )
     };
-    if weak.is_some_and(has_path) || !holes_lie_aside(pair, pose, settings) {
+    if weak.is_some_and(has_path) || !holes_lie_aside(context, pose) {
         return weak;
     }
     weakest_motion(source, target, pose, limit).or(weak)
@@ -207,33 +178,15 @@ fn motion_to_search(
 
 /// Whether the holes say that the part lies aside along itself: each part has some that the other lacks, or of those
 /// that have a counterpart most do not lie on it.
-fn holes_lie_aside(pair: [&Surface; 2], pose: &Similarity, settings: &AssessSettings) -> bool {
-    let [source, target] = pair;
-    let tolerance = Distances::of(source, target, pose.scale, settings).tolerance;
-    let borders = BorderComparison::new(pair, pose.scale, near(target)).at(pose);
-    let limit = borders.limit(&tolerance);
+fn holes_lie_aside(context: &PairContext<'_>, pose: &Similarity) -> bool {
+    let distances = context.distances(pose.scale);
+    let borders = context.borders(pose.scale, distances.first_border_reach);
+    let borders = borders.at(pose);
+    let limit = borders.limit(&distances.tolerance);
     let is_off = |pair: &&HolePair| pair.off.norm() > limit;
     let n_off = borders.holes.iter().filter(is_off).count();
     borders.missing.iter().all(|holes| !holes.is_empty())
         || n_off > 0 && 2 * n_off >= borders.holes.len()
-}
-
-/// Distance within which borders are looked for.
-pub(super) fn near(target: &Surface) -> f64 {
-    NEAR_SHARE * target.measures().diagonal
-}
-
-/// Distance within which surfaces leave a motion free: what overlaps, and what springback explains.
-pub(super) fn free_limit(
-    source: &Surface,
-    target: &Surface,
-    scale: f64,
-    settings: &AssessSettings,
-) -> f64 {
-    let springback = Distances::of(source, target, scale, settings)
-        .tolerance
-        .springback;
-    overlap_limit(source, target, scale, settings.allowance).max(springback)
 }
 
 /// A difference of shares without what says nothing: places along the borders differ, so that two poses of one
@@ -253,25 +206,19 @@ fn ratio_by_borders(behind: f64) -> f64 {
 }
 
 /// What poses of two parts are compared by.
-struct Pair<'a> {
-    source: &'a Surface,
-    target: &'a Surface,
-    /// Borders of both, looked for within `near`.
-    borders: BorderComparison<'a>,
-    /// The last step of first poses, and of those that are nearly there.
-    roughly: Settling<'a>,
-    finely: Settling<'a>,
-    near: f64,
-    /// Distance of surfaces that springback explains.
-    springback: f64,
-    /// What may remain of the distance of borders.
-    remainder: f64,
+struct PoseComparison<'a> {
+    context: &'a PairContext<'a>,
     distances: Distances,
+    /// Borders of both, looked for as far as under first poses.
+    borders: BorderComparison<'a>,
+    /// The refinement of first poses, and of those that are nearly there.
+    roughly: Refinement<'a>,
+    finely: Refinement<'a>,
 }
 
-/// A pose after its last step.
+/// A pose that was refined, and how well it fits.
 #[derive(Clone, Copy)]
-struct Settled {
+struct Refined {
     pose: Similarity,
     /// Share of the smaller part's borders that lies where it belongs, less that of holes where the other
     /// part is solid.
@@ -291,7 +238,7 @@ struct Settled {
     gap: f64,
 }
 
-impl Settled {
+impl Refined {
     /// Share of the borders beside one of the other part that lies where it belongs.
     fn held_of_paired(&self) -> f64 {
         if self.paired > 0.0 {
@@ -312,16 +259,17 @@ impl Settled {
         }
     }
 
-    fn is_as_close_as(&self, other: &Self, pair: &Pair<'_>) -> bool {
-        let little = pair.distances.little_more(LITTLE_GAP, other.gap);
+    fn is_as_close_as(&self, other: &Self, distances: &Distances) -> bool {
+        let springback = distances.tolerance.springback;
+        let little = distances.little_more(LITTLE_GAP, other.gap);
         let mut most = AS_CLOSE * other.gap + little;
         if self.met > MUCH_MORE * other.met {
             // A bent part lies closer where only a piece of it meets the other.
-            most = most.max(pair.springback);
+            most = most.max(springback);
         }
         if self.held >= SURELY_HELD && other.held < HARDLY_HELD {
             // A bent plate lies closer anywhere but where its holes belong.
-            most = most.max(ROUGHLY * pair.springback);
+            most = most.max(ROUGHLY * springback);
         }
         self.met >= AS_MUCH * other.met && self.gap <= most
     }
@@ -337,58 +285,63 @@ impl Settled {
     }
 }
 
-impl<'a> Pair<'a> {
-    fn new(
-        source: &'a Surface,
-        target: &'a Surface,
-        scale: f64,
-        settings: &AssessSettings,
-    ) -> Self {
-        let distances = Distances::of(source, target, scale, settings);
-        let tolerance = distances.tolerance;
-        let near = near(target);
-        let pair = [source, target];
+impl<'a> PoseComparison<'a> {
+    fn new(context: &'a PairContext<'a>, scale: f64) -> Self {
+        let distances = context.distances(scale);
         Self {
-            source,
-            target,
-            borders: BorderComparison::new(pair, scale, near),
-            roughly: Settling::within(pair, scale, settings, N_SETTLED, near),
-            finely: Settling::new(pair, scale, settings, N_SETTLED),
-            near,
-            springback: tolerance.springback,
-            remainder: tolerance.remainder,
+            context,
             distances,
+            borders: context.borders(scale, distances.first_border_reach),
+            roughly: Refinement::of_first_poses(context, scale, N_SETTLED),
+            finely: Refinement::new(context, scale, N_SETTLED),
         }
     }
 
-    /// A pose after its last step, which moves it by at least so much.
-    fn settle(&self, pose: &Similarity, least: Least) -> Option<Settled> {
-        let pose = self.roughly.settled(pose, least).unwrap_or(*pose);
-        self.measured(self.finely.settled(&pose, least).unwrap_or(pose))
+    /// Distance within which borders are looked for.
+    fn near(&self) -> f64 {
+        self.distances.first_border_reach
+    }
+
+    /// Distance of surfaces that springback explains.
+    fn springback(&self) -> f64 {
+        self.distances.tolerance.springback
+    }
+
+    /// What may remain of the distance of borders.
+    fn remainder(&self) -> f64 {
+        self.distances.tolerance.remainder
+    }
+
+    /// A pose after its refinement, which moves it by at least so much.
+    fn refined(&self, pose: &Similarity, least: Least) -> Result<Option<Refined>, Cancelled> {
+        let pose = self.roughly.refined(pose, least)?.unwrap_or(*pose);
+        let pose = self.finely.refined(&pose, least)?.unwrap_or(pose);
+        Ok(self.measured(pose))
     }
 
     /// A pose whose surfaces lie apart, moved however little: ragged borders step aside by more than surfaces may
     /// lie apart.
-    fn closer(&self, pose: &Settled) -> Option<Settled> {
-        self.measured(self.finely.settled(&pose.pose, Least::Any)?)
+    fn closer(&self, pose: &Refined) -> Result<Option<Refined>, Cancelled> {
+        let closer = self.finely.refined(&pose.pose, Least::Any)?;
+        Ok(closer.and_then(|pose| self.measured(pose)))
     }
 
     /// The rival that the borders speak for; `None` where they speak for the result, which may win only if it
     /// lies close.
-    fn choice(&self, result: &Settled, is_close: bool, rivals: &[Settled]) -> Option<Settled> {
-        let beats = |a: &Settled, b: &Settled| a.has_more_holes_than(b, self.remainder);
-        let is_better = |other: &Settled| {
+    fn choice(&self, result: &Refined, is_close: bool, rivals: &[Refined]) -> Option<Refined> {
+        let beats = |a: &Refined, b: &Refined| a.has_more_holes_than(b, self.remainder());
+        let is_better = |other: &Refined| {
             // Another trim moves outlines, and no hole.
             let misplaces_holes = result.n_holes >= other.n_holes
-                && result.worst_hole <= self.remainder
-                && other.worst_hole > self.remainder;
+                && result.worst_hole <= self.remainder()
+                && other.worst_hole > self.remainder();
             let more = result.held + result.grain.max(MORE_HELD);
             let is_chance = other.n_holes == 0 && other.held <= BY_CHANCE;
             let holds_more =
                 other.held > more && !is_chance && !misplaces_holes && !beats(result, other);
             !is_close || holds_more || beats(other, result)
         };
-        let better: Vec<&Settled> = rivals.iter().filter(|other| is_better(other)).collect();
+        let better: Vec<&Refined> = rivals.iter().filter(|other| is_better(other)).collect();
         let unbeaten = better
             .iter()
             .filter(|pose| !better.iter().any(|other| beats(other, pose)));
@@ -397,26 +350,21 @@ impl<'a> Pair<'a> {
     }
 
     /// The poses whose borders lie beside each other, best first: of those that would settle as one the first.
-    fn by_borders(
-        &self,
-        poses: &[Similarity],
-        monitor: &Monitor,
-    ) -> Result<Vec<Similarity>, Cancelled> {
+    fn by_borders(&self, poses: &[Similarity]) -> Result<Vec<Similarity>, Cancelled> {
+        let near = self.near();
         let apart = |pose: &Similarity| {
-            monitor.check()?;
-            Ok((self.borders.at(pose).apart(self.near), *pose))
+            self.context.check()?;
+            Ok((self.borders.at(pose).apart(near), *pose))
         };
         let sorted: Result<Vec<(f64, Similarity)>, Cancelled> =
             poses.par_iter().map(apart).collect();
         let mut sorted = sorted?;
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
         let closest = sorted.first().map_or(0.0, |(apart, _)| *apart);
-        let farthest = (FAR_BEHIND * closest).max(NOT_BESIDE * self.near);
-        let corners = self.source.mesh().aabb().corners();
+        let farthest = (FAR_BEHIND * closest).max(NOT_BESIDE * near);
         let mut kept: Vec<Similarity> = Vec::new();
         for (apart, pose) in sorted {
-            let is_near =
-                |other: &Similarity| pose.max_displacement(other, &corners) < 0.5 * self.near;
+            let is_near = |other: &Similarity| self.context.displacement(&pose, other) < 0.5 * near;
             if kept.len() < MOST_SETTLED && apart <= farthest && !kept.iter().any(is_near) {
                 kept.push(pose);
             }
@@ -425,12 +373,12 @@ impl<'a> Pair<'a> {
     }
 
     /// How well a pose fits.
-    fn measured(&self, pose: Similarity) -> Option<Settled> {
+    fn measured(&self, pose: Similarity) -> Option<Refined> {
         let (met, gap) = self.surfaces_met(&pose)?;
         let borders = self.borders.at(&pose);
         let (held, grain) = self.borders_held(&borders);
         let holes = borders.holes.iter().map(|pair| pair.off.norm());
-        Some(Settled {
+        Some(Refined {
             pose,
             held,
             paired: borders.share().min(1.0),
@@ -444,34 +392,33 @@ impl<'a> Pair<'a> {
     }
 
     /// Whether the surfaces of a pose that is not refined yet lie about as close as those of the result.
-    fn lies_on(&self, pose: &Similarity, result: &Settled) -> bool {
+    fn lies_on(&self, pose: &Similarity, result: &Refined) -> bool {
         let Some((met, gap)) = self.surfaces_met(pose) else {
             return false;
         };
         // Springback and what is left to refine may hold them apart.
-        let most = (AS_CLOSE * result.gap).max(ROUGHLY * self.springback);
+        let most = (AS_CLOSE * result.gap).max(ROUGHLY * self.springback());
         met >= AS_MUCH * result.met && gap <= most
     }
 
     /// Share of the smaller part that meets the other under a pose, and how far apart they lie there.
     fn surfaces_met(&self, pose: &Similarity) -> Option<(f64, f64)> {
-        let pair = [self.source, self.target];
-        let mut contacts = ContactSearch::new(pair, pose.scale, self.near, FEW_NODES);
+        let mut contacts = self.context.contacts(pose.scale, self.near(), FEW_NODES);
         let contacts = contacts.at(pose)?;
-        Some((contacts.share, contacts.typical_gap(self.remainder)))
+        Some((contacts.share, contacts.typical_gap(self.remainder())))
     }
 
     /// The result and poses of other families whose surfaces lie as close: turned over, turned round, or on another
     /// copy of the part; each with the motion that is free from there.
     fn roots(
         &self,
-        result: &Settled,
+        result: &Refined,
         others: &[Similarity],
         free: &FreeMotion,
     ) -> Vec<(Similarity, FreeMotion)> {
         let mut roots = vec![(result.pose, *free)];
         let mut n_tried = 0;
-        let centroid = self.source.measures().centroid;
+        let centroid = self.context.source.measures().centroid;
         for other in others {
             let is_known = |(root, free): &(Similarity, FreeMotion)| {
                 let turn = other.rotation * root.rotation.transpose();
@@ -479,7 +426,7 @@ impl<'a> Pair<'a> {
                     FreeMotionKind::Extruded => {
                         let way = other.apply(&centroid) - root.apply(&centroid);
                         let across = way.cross(&free.direction).norm();
-                        0.5 * (turn.trace() - 1.0) > SAME_WAY && across < self.near
+                        0.5 * (turn.trace() - 1.0) > SAME_WAY && across < self.near()
                     }
                     _ => free.direction.dot(&(turn * free.direction)) > SAME_WAY,
                 }
@@ -501,7 +448,7 @@ impl<'a> Pair<'a> {
     /// for what lies farther from it; holes where the other part is solid count against the pose. With it the
     /// share that a single place of the borders stands for.
     fn borders_held(&self, borders: &Borders) -> (f64, f64) {
-        let within = 2.0 * (self.remainder + borders.unremarkable());
+        let within = 2.0 * (self.remainder() + borders.unremarkable());
         let (mut held, mut paired, mut largest) = (0.0, 0.0, 0.0_f64);
         for pair in borders.pairs() {
             largest = largest.max(pair.weight);
@@ -524,14 +471,14 @@ impl<'a> Pair<'a> {
     /// tell which pose is right.
     fn with_most_holes<'s>(
         &self,
-        winner: &Settled,
-        poses: impl Iterator<Item = &'s Settled>,
+        winner: &Refined,
+        poses: impl Iterator<Item = &'s Refined>,
         start: usize,
     ) -> Option<Alternative> {
-        let has_more = |pose: &&Settled| {
+        let has_more = |pose: &&Refined| {
             pose.n_holes > winner.n_holes
                 && pose.missing < winner.missing
-                && pose.gap <= ROUGHLY * self.springback
+                && pose.gap <= ROUGHLY * self.springback()
         };
         let most = poses.filter(has_more).max_by(|a, b| {
             let more = a.n_holes.cmp(&b.n_holes);
@@ -547,12 +494,12 @@ impl<'a> Pair<'a> {
     /// The other poses with what their borders say of them.
     fn alternatives(
         &self,
-        winner: &Settled,
+        winner: &Refined,
         is_replaced: bool,
-        rivals: &[Settled],
+        rivals: &[Refined],
         outcome: &MatchOutcome,
     ) -> Vec<Alternative> {
-        let part = self.source.measures().into();
+        let part = self.context.source.measures().into();
         let before = Alternative {
             target_from_source: outcome.target_from_source,
             score_ratio: 1.0,
@@ -566,7 +513,7 @@ impl<'a> Pair<'a> {
             };
             let grain = pose.grain.max(winner.grain);
             let by_borders = ratio_by_borders(apart(pose.behind(winner), grain));
-            let by_holes = if winner.has_more_holes_than(&pose, self.remainder) {
+            let by_holes = if winner.has_more_holes_than(&pose, self.remainder()) {
                 FEWER_HOLES
             } else {
                 0.0
@@ -576,7 +523,7 @@ impl<'a> Pair<'a> {
                 ..*other
             }
         };
-        let little = NO_GAP * self.remainder;
+        let little = NO_GAP * self.remainder();
         let slid = rivals.iter().map(|rival| Alternative {
             target_from_source: rival.pose,
             score_ratio: ((rival.gap + little) / (winner.gap + little)).max(1.0),
@@ -589,7 +536,7 @@ impl<'a> Pair<'a> {
             .map(|other| with_borders(&other))
             .collect();
         alternatives.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
-        let mut distinct = distinct(&alternatives, self.source);
+        let mut distinct = distinct(&alternatives, self.context.source);
         distinct.truncate(MOST_ALTERNATIVES.max(outcome.alternatives.len()));
         distinct
     }

@@ -137,7 +137,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 /// The motion that the overlap resists so little that noise, springback or facets may hide where it ends.
-pub(super) fn weak_motion(
+pub(crate) fn weak_motion(
     source: &Surface,
     target: &Surface,
     target_from_source: &Similarity,
@@ -148,7 +148,7 @@ pub(super) fn weak_motion(
 
 /// The one motion that the overlap resists least, as a shift or a turn, where that is no more than a profile resists
 /// that is slid along itself.
-pub(super) fn weakest_motion(
+pub(crate) fn weakest_motion(
     source: &Surface,
     target: &Surface,
     target_from_source: &Similarity,
@@ -255,8 +255,8 @@ impl Resistance {
         })
     }
 
-    /// The motion that meets the least resistance: its turn, lengths scaled by the radius, its shift at the centroid, and
-    /// a point of its axis.
+    /// The motion that meets the least resistance: its turn, lengths scaled by the radius, its shift at the centroid,
+    /// and a point of its axis.
     fn weakest(&self) -> (Vector3, Vector3, Point3) {
         let weakest = self.eigen.eigenvalues.imin();
         let motion = self.eigen.eigenvectors.column(weakest);

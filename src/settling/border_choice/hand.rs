@@ -2,14 +2,14 @@
 
 use rayon::prelude::*;
 
-use super::{AS_CLOSE, MOST_SLID, Pair, SURELY_HELD, Settled, apart, free_limit, ratio_by_borders};
-use crate::assess::settle::Least;
-use crate::assess::slide::slid;
-use crate::assess::sliding::weak_motion;
-use crate::assess::tolerance::AssessSettings;
+use super::{AS_CLOSE, MOST_SLID, PoseComparison, Refined, SURELY_HELD, apart, ratio_by_borders};
+use crate::assess::free_motion::weak_motion;
 use crate::geometry::Similarity;
-use crate::monitor::{Cancelled, Monitor};
-use crate::registration::{MatchOutcome, Surface};
+use crate::monitor::Cancelled;
+use crate::registration::MatchOutcome;
+use crate::settling::context::PairContext;
+use crate::settling::free_motion_search::poses_along;
+use crate::settling::refine_with_borders::Least;
 
 /// Shares of the borders that differ by less than this do not tell hands apart.
 const SAME_SHARE: f64 = 0.02;
@@ -23,12 +23,10 @@ const OPPOSITE_IS_CLEAR: f64 = 1.3;
 /// tells the left part from the right one. `None` where the surfaces decide, or the opposite hand found
 /// no pose.
 pub fn hand_by_borders(
-    source: &Surface,
-    target: &Surface,
+    context: &PairContext<'_>,
     outcome: &MatchOutcome,
-    settings: &AssessSettings,
-    monitor: &Monitor,
 ) -> Result<Option<f64>, Cancelled> {
+    context.check()?;
     let check = &outcome.mirror_check;
     let is_near = check
         .score_ratio
@@ -36,28 +34,26 @@ pub fn hand_by_borders(
     let Some(mirrored) = check.target_from_source.as_ref().filter(|_| is_near) else {
         return Ok(None);
     };
-    let scale = outcome.target_from_source.scale;
-    let pair = Pair::new(source, target, scale, settings);
-    let Some(result) = pair.measured(outcome.target_from_source) else {
+    let PairContext { source, target, .. } = *context;
+    let found = &outcome.target_from_source;
+    let comparison = PoseComparison::new(context, found.scale);
+    let distances = &comparison.distances;
+    let Some(result) = comparison.measured(*found) else {
         return Ok(None);
     };
-    let limit = free_limit(source, target, scale, settings);
-    let free = weak_motion(source, target, &outcome.target_from_source, limit);
-    let slid = free.map_or_else(Vec::new, |free| {
-        slid(source, target, mirrored, &free, MOST_SLID)
-    });
-    let poses: Vec<Similarity> = slid.into_iter().chain([*mirrored]).collect();
-    let by_borders = pair.by_borders(&poses, monitor)?;
-    let settle = |pose: &Similarity| {
-        monitor.check()?;
-        Ok(pair.settle(pose, Least::Any))
-    };
-    let settled: Result<Vec<Option<Settled>>, Cancelled> =
-        by_borders.par_iter().map(settle).collect();
-    let close = settled?
+    let mut poses: Vec<Similarity> = Vec::new();
+    if let Some(free) = weak_motion(source, target, found, distances.free_limit) {
+        poses = poses_along(context, mirrored, &free, MOST_SLID)?;
+    }
+    poses.push(*mirrored);
+    let by_borders = comparison.by_borders(&poses)?;
+    let refine = |pose: &Similarity| comparison.refined(pose, Least::Any);
+    let refined: Result<Vec<Option<Refined>>, Cancelled> =
+        by_borders.par_iter().map(refine).collect();
+    let close = refined?
         .into_iter()
         .flatten()
-        .filter(|other| other.is_as_close_as(&result, &pair));
+        .filter(|other| other.is_as_close_as(&result, distances));
     let Some(opposite) = close.max_by(|a, b| a.held.total_cmp(&b.held)) else {
         return Ok(None);
     };

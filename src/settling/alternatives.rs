@@ -1,0 +1,142 @@
+//! The choice between poses by the shapes under each of them. Facets and springback raise all scores, so that a
+//! part with waves, turned by half a turn, may score only a few percent worse; that a hole, a bead or a border
+//! then lies elsewhere shows all the same.
+
+use rayon::prelude::*;
+
+use super::candidate::{Candidate, FewPlaces, Judged, LEAST_SHARED, is_much_closer, judged};
+use super::chosen_pose::{ChosenPose, distinct, ranked};
+use super::context::PairContext;
+use super::refine_with_borders::Refinement;
+use crate::assess::contact::MAX_NODES;
+use crate::assess::free_motion::weak_motion;
+use crate::assess::shape::OVERHANGS;
+use crate::assess::tolerance::Distances;
+use crate::geometry::Similarity;
+use crate::monitor::Cancelled;
+use crate::registration::{Alternative, Extent, MatchOutcome, same_pose};
+
+/// Alternatives that score up to so many times as bad are looked at where they settle: they are refined no further
+/// than it takes to see that they are behind, and noise, offsets and springback may leave two poses that fit alike so
+/// far apart.
+const WORTH_SETTLING: f64 = 3.0;
+
+/// The pose of `outcome` or one of its alternatives that scores nearly as well, whichever has the fewest differences
+/// between the shapes, or one under which a piece of each part lies on the other while the result lies much farther
+/// apart. Alternatives with more differences than the pose chosen score worse; where each part has a piece that the
+/// other lacks, those that fit as well with less overlap score as well. `None` where no other pose is looked at.
+/// O(alternatives · (border edges + nodes · log triangles)).
+pub fn chosen_by_shape(
+    context: &PairContext<'_>,
+    outcome: &MatchOutcome,
+) -> Result<Option<ChosenPose>, Cancelled> {
+    context.check()?;
+    let found = &outcome.target_from_source;
+    let distances = context.distances(found.scale);
+    let few = FewPlaces::new(context, found.scale);
+    let (met, apart) = few.met_and_apart(found);
+    let overhangs = met < OVERHANGS;
+    let lies_closer = |other: &Alternative| {
+        let (met, own) = few.met_and_apart(&other.target_from_source);
+        met >= LEAST_SHARED && is_much_closer(met, own, apart, distances.noise)
+    };
+    let is_near = |other: &&Alternative| {
+        let scores_near = overhangs || other.score_ratio < WORTH_SETTLING;
+        scores_near || apart > distances.noise && lies_closer(other)
+    };
+    let alternatives = outcome.alternatives.iter();
+    let (near, far): (Vec<&Alternative>, Vec<&Alternative>) = alternatives.partition(is_near);
+    if near.is_empty() {
+        return Ok(None);
+    }
+    let refinement = Refinement::new(context, found.scale, MAX_NODES);
+    let refine = |other: &&Alternative| {
+        let pose = other.target_from_source;
+        Ok(refinement.closest(&pose)?.unwrap_or(pose))
+    };
+    let refined: Result<Vec<Similarity>, Cancelled> = near.par_iter().map(refine).collect();
+    let Judged { result, candidates } =
+        judged(context, (*found, None), &refined?, |pose, shape| {
+            few.candidate(pose, shape, overhangs)
+        })?;
+    // Of candidates with as many differences the first one scores best.
+    let better = candidates.iter().filter(|other| other.beats(&result));
+    let better = better.min_by_key(|other| other.n_differences);
+    let closer = || {
+        candidates
+            .iter()
+            .find(|other| other.lies_exactly_elsewhere_unlike(&result, distances.noise))
+    };
+    let winner = better.or_else(closer).unwrap_or(&result);
+    // Where surfaces leave the pose free, borders and holes have compared all poses, unless outlines are no evidence.
+    let PairContext { source, target, .. } = *context;
+    let surfaces_hold = weak_motion(source, target, &winner.pose, distances.free_limit).is_none();
+    let beside = Beside {
+        winner,
+        distances,
+        part: source.measures().into(),
+        overhangs,
+        borders_chose: !surfaces_hold && !winner.outlines_are_no_evidence,
+    };
+    let before = Alternative {
+        target_from_source: *found,
+        score_ratio: 1.0,
+        start: outcome.winner,
+    };
+    let near = near.into_iter().zip(&candidates);
+    let mut alternatives: Vec<Alternative> = near
+        .map(|(other, candidate)| beside.rated(*other, candidate))
+        .chain(far.into_iter().copied())
+        .chain([ranked(before, winner.beats(&result))])
+        .filter(|other| !beside.is_winner(&other.target_from_source))
+        .collect();
+    alternatives.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
+    Ok(Some(ChosenPose {
+        target_from_source: winner.pose,
+        alternatives: distinct(&alternatives, source),
+    }))
+}
+
+/// What alternatives are rated by beside the pose that was chosen.
+struct Beside<'a> {
+    winner: &'a Candidate,
+    distances: Distances,
+    part: Extent,
+    /// Whether each part has a piece that the other lacks under the result of the match.
+    overhangs: bool,
+    /// Whether borders and holes have compared all poses before.
+    borders_chose: bool,
+}
+
+impl Beside<'_> {
+    fn is_winner(&self, pose: &Similarity) -> bool {
+        same_pose(pose, &self.winner.pose, &self.part)
+    }
+
+    /// An alternative with what the shapes say of it where it settles.
+    fn rated(&self, other: Alternative, candidate: &Candidate) -> Alternative {
+        let (winner, noise) = (self.winner, self.distances.noise);
+        if winner.beats(candidate) {
+            return ranked(other, true);
+        }
+        let fits_elsewhere = self.overhangs
+            && candidate.fits_elsewhere_as_well_as(winner, &self.distances)
+            || candidate.lies_much_closer_elsewhere_than(winner, noise);
+        let ratio = if fits_elsewhere {
+            Some(1.0)
+        } else {
+            let ratio = candidate.ratio_to(winner, noise);
+            ratio.filter(|_| !self.borders_chose)
+        };
+        // One that settles at the winner's pose is no other.
+        let is_other = !self.is_winner(&candidate.pose);
+        match ratio.filter(|ratio| is_other && *ratio < other.score_ratio) {
+            Some(score_ratio) => Alternative {
+                target_from_source: candidate.pose,
+                score_ratio,
+                ..other
+            },
+            None => other,
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! What all steps are given: both parts, what they are compared by, and the request to cancel.
+
+use crate::assess::borders::BorderComparison;
+use crate::assess::contact::ContactSearch;
+use crate::assess::statements::{Outlines, shape_statement};
+use crate::assess::tolerance::Distances;
+use crate::assess::{AssessSettings, ShapeStatement};
+use crate::geometry::{Point3, Similarity};
+use crate::monitor::{Cancelled, Monitor};
+use crate::registration::Surface;
+
+/// Two parts whose pose is chosen.
+pub struct PairContext<'a> {
+    pub(super) source: &'a Surface,
+    pub(super) target: &'a Surface,
+    pub(super) settings: &'a AssessSettings,
+    pub(super) monitor: &'a Monitor,
+    /// Of the source's box.
+    corners: [Point3; 8],
+}
+
+impl<'a> PairContext<'a> {
+    /// For source and target.
+    pub fn new(
+        [source, target]: [&'a Surface; 2],
+        settings: &'a AssessSettings,
+        monitor: &'a Monitor,
+    ) -> Self {
+        Self {
+            source,
+            target,
+            settings,
+            monitor,
+            corners: source.mesh().aabb().corners(),
+        }
+    }
+
+    /// Every step asks this before and between its parts.
+    pub(super) fn check(&self) -> Result<(), Cancelled> {
+        self.monitor.check()
+    }
+
+    /// Source and target.
+    pub(super) fn surfaces(&self) -> [&'a Surface; 2] {
+        [self.source, self.target]
+    }
+
+    /// What both are compared by under poses of this scale.
+    pub(super) fn distances(&self, scale: f64) -> Distances {
+        Distances::of(self.source, self.target, scale, self.settings)
+    }
+
+    /// How far the source lies apart under two poses, at the corners of its box.
+    pub(super) fn displacement(&self, a: &Similarity, b: &Similarity) -> f64 {
+        a.max_displacement(b, &self.corners)
+    }
+
+    /// The search for the places where both meet under poses of this scale.
+    pub(super) fn contacts(&self, scale: f64, reach: f64, max_nodes: usize) -> ContactSearch<'a> {
+        ContactSearch::new(self.surfaces(), scale, reach, max_nodes)
+    }
+
+    /// The borders of both, looked for within `reach`.
+    pub(super) fn borders(&self, scale: f64, reach: f64) -> BorderComparison<'a> {
+        BorderComparison::new(self.surfaces(), scale, reach)
+    }
+
+    /// The statement about the shape under a pose.
+    pub(super) fn shape(&self, pose: &Similarity, outlines: Outlines) -> ShapeStatement {
+        shape_statement(self.surfaces(), pose, self.settings, outlines)
+    }
+}

@@ -1,0 +1,104 @@
+//! Poses from holes, whatever the match found: do more holes lie on like ones under one of them?
+
+use std::cmp::Reverse;
+
+use rayon::prelude::*;
+
+use super::candidate::{Candidate, Judged, LITTLE_LESS, judged};
+use super::chosen_pose::ChosenPose;
+use super::context::PairContext;
+use super::refine_with_borders::{Least, Refinement};
+use crate::assess::contact::MAX_NODES;
+use crate::assess::statements::Outlines;
+use crate::assess::tolerance::is_source_smaller;
+use crate::geometry::Similarity;
+use crate::monitor::Cancelled;
+use crate::registration::{MatchOutcome, Surface, WideSearch, is_piece};
+
+/// The pose under which holes lie on like ones of the other part, where those of the pose of `outcome` do not: of a
+/// piece where the shapes differ and do not, or surely less, under that one, since a piece may slide along a strip
+/// with hardly any gain or loss of its surfaces; of any part where a hole has no counterpart and more have one under
+/// that pose, since a regular pattern may be shifted. `None` where rivals were not to be looked for, and where there
+/// is no such pose.
+/// O(poses · (border edges + nodes · log triangles)).
+pub fn placed_by_holes(
+    context: &PairContext<'_>,
+    outcome: &MatchOutcome,
+) -> Result<Option<ChosenPose>, Cancelled> {
+    context.check()?;
+    let PairContext { source, target, .. } = *context;
+    let found = &outcome.target_from_source;
+    if !outcome.rivals_sought || !can_place(context, found) {
+        return Ok(None);
+    }
+    let is_piece = if is_source_smaller(source, target, 1.0) {
+        is_piece(source, target)
+    } else {
+        is_piece(target, source)
+    };
+    let is_open = |result: &Candidate| is_piece && result.differs() || result.n_alone > 0;
+    let shape = context.shape(found, Outlines::Compared);
+    if !is_open(&Candidate::at(*found, &shape, None)) {
+        return Ok(None);
+    }
+    let refinement = Refinement::new(context, 1.0, MAX_NODES);
+    let refine = |pose: &Similarity| Ok(refinement.refined(pose, Least::Any)?.unwrap_or(*pose));
+    let on_holes = poses(context)?;
+    let refined: Result<Vec<Similarity>, Cancelled> = on_holes.par_iter().map(refine).collect();
+    let Judged {
+        result,
+        candidates: mut better,
+    } = judged(context, (*found, Some(shape)), &refined?, |pose, shape| {
+        Candidate::at(pose, shape, None)
+    })?;
+    better.retain(|other| {
+        let differs_less = is_piece && result.differs() && !other.differs();
+        (differs_less || other.beats(&result)) && other.met >= result.met - LITTLE_LESS
+    });
+    better.sort_by_key(|other| (other.n_differences, Reverse(other.n_holes)));
+    let best = better.split_first();
+    Ok(best.map(|(winner, others)| ChosenPose::in_place_of(outcome, winner, others, source)))
+}
+
+/// Whether both parts have holes, and a pose like this one is looked for by them.
+pub(super) fn can_place(context: &PairContext<'_>, pose: &Similarity) -> bool {
+    let has_holes = |part: &Surface| part.borders().iter().any(|border| border.is_hole);
+    let may_place = !pose.is_mirrored() && pose.scale == 1.0;
+    may_place && context.surfaces().into_iter().all(has_holes)
+}
+
+/// The poses under which the most holes of the smaller part lie on like ones of the other; they are as exact as the
+/// middles of a few holes. O(holes² of both parts), bounded.
+fn poses(context: &PairContext<'_>) -> Result<Vec<Similarity>, Cancelled> {
+    let PairContext { source, target, .. } = *context;
+    let is_source_smaller = is_source_smaller(source, target, 1.0);
+    let [data, model] = if is_source_smaller {
+        [source, target]
+    } else {
+        [target, source]
+    };
+    let Some(search) = WideSearch::new(data, model) else {
+        return Ok(Vec::new());
+    };
+    let mut poses = search.on_holes(context.monitor)?;
+    if !is_source_smaller {
+        for pose in &mut poses {
+            *pose = pose.inverse();
+        }
+    }
+    Ok(poses)
+}
+
+/// Of these the poses that lie farther than `apart` from all known ones, which are more exact.
+pub(super) fn poses_unlike(
+    context: &PairContext<'_>,
+    known: &[Similarity],
+    apart: f64,
+) -> Result<Vec<Similarity>, Cancelled> {
+    let mut found = poses(context)?;
+    found.retain(|pose| {
+        let mut known = known.iter();
+        known.all(|known| context.displacement(pose, known) > apart)
+    });
+    Ok(found)
+}

@@ -1,0 +1,125 @@
+//! The last steps of a match: the pose that was refined on the full meshes is moved, or another one takes its place,
+//! before it is assessed. [`settle`] is the list of the steps, in their order; each answers one question.
+//!
+//! They measure what `assess` measures: `candidate` says what the shapes say for and against a pose,
+//! `refine_with_borders` moves one to where surfaces, borders and holes fit together, `free_motion_search` looks along
+//! what surfaces leave free. `context` is what all of them are given, `chosen_pose` what they give back.
+
+mod all_pairs;
+mod alternatives;
+mod border_choice;
+mod candidate;
+mod chosen_pose;
+mod context;
+mod free_motion_search;
+mod full_overlap;
+mod holes;
+mod pulled_aside;
+mod refine_with_borders;
+mod remove_bend;
+mod remove_offset;
+
+pub use all_pairs::is_better_with_all_pairs;
+pub use alternatives::chosen_by_shape;
+pub use border_choice::{hand_by_borders, held_by_borders};
+pub use chosen_pose::ChosenPose;
+pub use context::PairContext;
+pub use full_overlap::placed_as_a_whole;
+pub use holes::placed_by_holes;
+pub use pulled_aside::{PulledAside, Remainder, pulled_aside};
+pub use refine_with_borders::refined_with_borders;
+pub use remove_bend::without_bend;
+pub use remove_offset::without_offset;
+
+use crate::assess::AssessSettings;
+use crate::monitor::{Cancelled, Monitor};
+use crate::registration::{Alternative, MatchOutcome, MatchSettings, Method, Surface, Termination};
+
+/// Chooses and moves the pose of `outcome`, of source and target. `check` is what it will be assessed by. Nothing
+/// happens where the match was stopped, and where nothing was searched or refined.
+pub fn settle(
+    outcome: &mut MatchOutcome,
+    surfaces: [&Surface; 2],
+    settings: &MatchSettings,
+    check: &AssessSettings,
+    monitor: &Monitor,
+) -> Result<(), Cancelled> {
+    let is_searched = settings.refine_on_full && settings.method != Method::Umeyama;
+    if !is_searched || outcome.termination == Termination::Stopped {
+        return Ok(());
+    }
+    let context = PairContext::new(surfaces, check, monitor);
+    choose_pairs(&context, outcome)?;
+    hold(&context, outcome)?;
+    let chosen = chosen_by_shape(&context, outcome)?;
+    take(outcome, chosen);
+    let placed = placed_by_holes(&context, outcome)?;
+    take(outcome, placed);
+    let placed = placed_as_a_whole(&context, outcome)?;
+    take(outcome, placed);
+    // Both hands are compared where their surfaces lie closest.
+    if let Some(ratio) = hand_by_borders(&context, outcome)? {
+        outcome.mirror_check.score_ratio = Some(ratio);
+    }
+    remove_bend(&context, outcome)?;
+    if check.remove_offset
+        && let Some(pose) = without_offset(&context, &outcome.target_from_source)?
+    {
+        outcome.target_from_source = pose;
+    }
+    Ok(())
+}
+
+/// The pose of the closest pairs, or of all of them.
+fn choose_pairs(context: &PairContext<'_>, outcome: &mut MatchOutcome) -> Result<(), Cancelled> {
+    if let Some(pose) = outcome.with_all_pairs.take()
+        && is_better_with_all_pairs(context, [&outcome.target_from_source, &pose])?
+    {
+        outcome.target_from_source = pose;
+    }
+    Ok(())
+}
+
+/// Moves the pose to where borders and holes hold it, unless that pulls it aside of where the surfaces lie on each
+/// other.
+fn hold(context: &PairContext<'_>, outcome: &mut MatchOutcome) -> Result<(), Cancelled> {
+    let found = outcome.target_from_source;
+    if let Some(held) = held_by_borders(context, outcome)? {
+        let poses = [&found, &held.target_from_source];
+        match pulled_aside(context, poses, Remainder::MayGrow)? {
+            None => held.taken_by(outcome),
+            Some(PulledAside::Rival) => {
+                let rival = Alternative {
+                    target_from_source: held.target_from_source,
+                    score_ratio: 1.0,
+                    start: outcome.winner,
+                };
+                outcome.alternatives.insert(0, rival);
+            }
+            Some(PulledAside::Worse) => {}
+        }
+    } else if let Some(pose) = refined_with_borders(context, &found)?
+        && pulled_aside(context, [&found, &pose], Remainder::MayNotGrow)?.is_none()
+    {
+        outcome.target_from_source = pose;
+    }
+    Ok(())
+}
+
+/// Takes out of the pose what a bend does to it, unless that pulls it aside.
+fn remove_bend(context: &PairContext<'_>, outcome: &mut MatchOutcome) -> Result<(), Cancelled> {
+    let found = outcome.target_from_source;
+    if let Some(pose) = without_bend(context, &found)?
+        && pulled_aside(context, [&found, &pose], Remainder::MayGrow)?.is_none()
+    {
+        outcome.target_from_source = pose;
+    }
+    Ok(())
+}
+
+/// Another pose becomes the result where a step chose one.
+fn take(outcome: &mut MatchOutcome, chosen: Option<ChosenPose>) {
+    if let Some(chosen) = chosen {
+        chosen.taken_by(outcome);
+    }
+}
