@@ -327,10 +327,13 @@ impl QuantityReport {
             div.scale { (charts::plain_legend(&self.scales[0], &self.name)) }
             div.scale { (charts::plain_legend(&self.scales[1], self.difference)) }
             (table("Distribution, weighted by area", &columns, &rows))
-            (charts::two_histograms(&self.shares, self.range, &self.name))
-            ul.legend {
-                li { i style="background:var(--stamped);opacity:.45" {} (self.sides[0]) }
-                li { i.line style="border-color:var(--crash)" {} (self.sides[1]) }
+            // Values that are all one have no axis to stand on.
+            @if self.range[0] < self.range[1] {
+                (charts::two_histograms(&self.shares, self.range, &self.name))
+                ul.legend {
+                    li { i style="background:var(--stamped);opacity:.45" {} (self.sides[0]) }
+                    li { i.line style="border-color:var(--crash)" {} (self.sides[1]) }
+                }
             }
             (fact_table("Both histograms", &facts))
         }
