@@ -65,7 +65,7 @@ impl<'a> WideStarts<'a> {
     }
 
     /// Poses in which the smaller part lies on another place of the larger one that is shaped like the
-    /// one it lies on under `pose` (target from source, in the frames that were searched): what the
+    /// one it lies on under `start` (target from source, in the frames that were searched): what the
     /// wide search of the larger part on itself finds. Empty for parts of one size, whose own wide
     /// search has seen these places.
     pub(crate) fn alike(&self, start: &Start, monitor: &Monitor) -> Result<Vec<Start>, Cancelled> {
