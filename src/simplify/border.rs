@@ -123,6 +123,7 @@ struct SegmentTree {
     boxes: Vec<Aabb>,
 }
 
+/// Segments of a leaf.
 const LEAF: usize = 4;
 
 impl SegmentTree {
