@@ -340,7 +340,10 @@ fn two_files_without_roles_are_sorted_by_content() {
     let paths = ["stamped.k", "crash.k"].map(PathBuf::from).to_vec();
     window.apply(FileCommand::Open { paths, role: None });
     assert_eq!(window.part(Role::Crash).facts.parts.len(), 2);
-    assert_eq!(window.part(Role::Stamped).facts.formed, 1);
+    assert_eq!(
+        window.part(Role::Stamped).facts.formed,
+        FormingEvidence::ThicknessPerElement
+    );
     let offers_swap = |n: &Notice| n.offer == Some(Action::Swap);
     assert!(window.state.log.notices.toasts().any(offers_swap));
     let before = window.mesh(Role::Crash);
@@ -1331,7 +1334,7 @@ fn the_example_loads_from_the_program_itself() {
             panic!("not loaded");
         };
         assert!(part.mesh.n_triangles() > 1000);
-        assert_eq!(facts.formed > 0, role == Role::Stamped);
+        assert_eq!(facts.formed > FormingEvidence::None, role == Role::Stamped);
         window.apply(FileCommand::DismissUnitHint);
     }
 }

@@ -10,7 +10,7 @@ use crate::app::mapping::tell_dropped;
 use crate::app::work::Work;
 use crate::app::{Action, Effect, NoticeLevel, Part, Settings, StampedPose, facts};
 use crate::formats::ReadOptions;
-use crate::jobs::{JobKey, JobKind, PartFacts, PartSource, ProjectRequest};
+use crate::jobs::{FormingEvidence, JobKey, JobKind, PartFacts, PartSource, ProjectRequest};
 use crate::pipeline::load::{LoadSettings, LoadedPart, same_parts_line, usual_selection};
 use crate::pipeline::project::is_project;
 use crate::role::{PerRole, Role};
@@ -360,7 +360,7 @@ impl PartsState {
         let is_single = self.guess.n_pending == 1;
         let is_free = work.document.part(role.other()).is_none();
         let may_replace = is_free || work.document.part(role).is_some();
-        is_single && may_replace && role == Role::Crash && facts.formed > 0
+        is_single && may_replace && role == Role::Crash && facts.formed > FormingEvidence::None
     }
 
     fn place(
@@ -433,9 +433,11 @@ impl PartsState {
         };
         let why = match stamped.facts.formed {
             _ if is_by_name => "its name says so",
-            0 => "no file says which it is",
-            1 => "it is one part with a thickness for each element",
-            _ => "it carries forming results",
+            FormingEvidence::None => "no file says which it is",
+            FormingEvidence::ThicknessPerElement => {
+                "it is one part with a thickness for each element"
+            }
+            FormingEvidence::Results => "it carries forming results",
         };
         let text = format!(
             "{} is taken for the stamped part: {why}",
@@ -479,9 +481,6 @@ impl PartsState {
     }
 }
 
-/// [`PartFacts::formed`] of a file with stresses or strains.
-const RESULTS: u8 = 2;
-
 /// How a file is read that was not read before.
 fn usual_load_settings(settings: &Settings) -> LoadSettings {
     LoadSettings {
@@ -505,7 +504,8 @@ fn offer_swap(work: &mut Work<'_>) {
         return;
     };
     let PerRole { crash, stamped } = both;
-    let is_by_content = crash.facts.formed == RESULTS && stamped.facts.formed == 0;
+    let is_by_content = crash.facts.formed == FormingEvidence::Results
+        && stamped.facts.formed == FormingEvidence::None;
     let is_by_name = crash.facts.formed >= stamped.facts.formed
         && stamped_word(crash) > 0
         && stamped_word(stamped) < 0;
