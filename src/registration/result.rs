@@ -28,6 +28,14 @@ impl Side {
             Self::Target => Self::Source,
         }
     }
+
+    /// With this side as the data, a pose of target from source as one of model from data, or the other way round.
+    pub(crate) fn oriented(self, pose: &Similarity) -> Similarity {
+        match self {
+            Self::Source => *pose,
+            Self::Target => pose.inverse(),
+        }
+    }
 }
 
 /// One iteration of one start.
