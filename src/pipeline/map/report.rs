@@ -242,9 +242,10 @@ fn number_row(of: &DistributionRecord) -> NumberRow {
 fn swatch(file: usize) -> String {
     let (color, is_hatched) = ColorScale::file_look(file);
     let color = hex(color);
-    match is_hatched {
-        true => format!("repeating-linear-gradient(135deg,#262a30 0 2px,{color} 2px 6px)"),
-        false => color,
+    if is_hatched {
+        format!("repeating-linear-gradient(135deg,#262a30 0 2px,{color} 2px 6px)")
+    } else {
+        color
     }
 }
 

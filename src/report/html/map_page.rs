@@ -119,9 +119,10 @@ impl MapReport {
         let asked = || self.checks.iter().filter(|check| check.is_met.is_some());
         let missed: Vec<&CheckReport> = asked().filter(|c| c.is_met == Some(false)).collect();
         let n_asked = asked().count();
-        let (class, sign) = match missed.is_empty() {
-            true => ("verdict good", "✔"),
-            false => ("verdict check", "!"),
+        let (class, sign) = if missed.is_empty() {
+            ("verdict good", "✔")
+        } else {
+            ("verdict check", "!")
         };
         html! {
             @if n_asked > 0 {

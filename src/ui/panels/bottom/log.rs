@@ -121,10 +121,12 @@ impl Lines {
     /// All of a row that was opened. What came out of a match and what went wrong are shown with as many as fit, so
     /// that the newest row begins in sight; other rows take one.
     fn of(row: &LogRow, is_opened: bool, fitting: Self) -> Self {
-        match is_opened {
-            true => Self(usize::MAX),
-            false if row.step == RESULT || row.level >= NoticeLevel::Warning => fitting,
-            false => Self::ONE,
+        if is_opened {
+            Self(usize::MAX)
+        } else if row.step == RESULT || row.level >= NoticeLevel::Warning {
+            fitting
+        } else {
+            Self::ONE
         }
     }
 }
