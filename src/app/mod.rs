@@ -52,8 +52,8 @@ pub use inspect::{
 };
 pub use job_board::{JobBoard, RunningJob};
 pub use log::{
-    Clock, Log, LogRow, LogState, Notice, NoticeCommand, NoticeId, NoticeLevel, Notices, Showing,
-    age_text, clock_text, duration_text,
+    Clock, Log, LogRow, LogState, LogStep, Notice, NoticeCommand, NoticeId, NoticeLevel, Notices,
+    Showing, age_text, clock_text, duration_text,
 };
 pub use mapping::{
     DoubtfulElement, FileShare, Further, FurtherPose, MapCommand, MapDisplay, MapPicture,
