@@ -9,7 +9,7 @@ use crate::geometry::{Aabb, Matrix3, MatrixError, Point3, Similarity, Vector3};
 
 pub use super::card_reader::{ReadBackError, read_back};
 
-/// A set of cards that lays the stamped part on the crash part.
+/// A set of cards that aligns the stamped part with the crash part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum CardForm {
     /// `*INCLUDE_STAMPED_PART_MATRIX`: the solver maps the forming results.
