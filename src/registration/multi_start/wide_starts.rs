@@ -17,7 +17,7 @@ const WORTH_LOSS: f64 = 3.0;
 /// … plus this.
 const WORTH_MORE: f64 = 0.1;
 
-/// Motions of the larger part on itself with a larger loss lay nothing on its like.
+/// Motions of the larger part on itself with a larger loss align nothing with its like.
 const ALIKE_LOSS: f64 = 0.7;
 
 /// The wide search of a pair, made ready once for both hands. The smaller part is the data.
