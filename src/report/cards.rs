@@ -161,12 +161,6 @@ impl Cards {
     pub fn largest_node_error<'a>(&self, points: impl IntoIterator<Item = &'a Point3>) -> f64 {
         self.asked.max_displacement(&self.read_back, points)
     }
-
-    /// Largest entry of |RᵀR − I| of the rotation as it reads back.
-    pub fn orthogonality_error(&self) -> f64 {
-        let r = self.read_back.rotation;
-        (r.transpose() * r - Matrix3::identity()).amax()
-    }
 }
 
 /// Most columns of a file name on cards.

@@ -12,6 +12,21 @@ use shapematch::settings::Choice;
 
 use super::drawn_pan::{everywhere, pan, panel, placement, worst_node};
 
+/// A match of bare meshes, which are prepared first.
+pub fn match_meshes<'a>(
+    source: &TriMesh,
+    target: &TriMesh,
+    settings: &MatchSettings,
+    monitor: impl Into<MatchMonitor<'a>>,
+) -> Result<MatchOutcome, RegistrationError> {
+    let input = MatchInput {
+        source: &Surface::new(source, "source")?,
+        target: &Surface::new(target, "target")?,
+        reduced: None,
+    };
+    match_surfaces(&input, settings, monitor)
+}
+
 fn run(source: &TriMesh, target: &TriMesh, settings: &MatchSettings) -> MatchOutcome {
     match_meshes(source, target, settings, &Monitor::silent()).unwrap()
 }
