@@ -79,7 +79,7 @@ impl AppState {
                 NoticeCommand::Dismiss(id) => work.log.notices.dismiss(id),
                 NoticeCommand::MarkRead => work.log.notices.mark_read(),
                 NoticeCommand::Tell(level, text) => {
-                    work.log_at(level, LogStep::Window, None, text, None)
+                    work.log_at(level, LogStep::Window, None, text, None);
                 }
             },
             Command::Settings(settings) => return self.apply_settings(*settings),
