@@ -1,5 +1,5 @@
-//! Shape matching for stamped sheet parts: finds the pose that lays the part of a stamping
-//! simulation on the same part of a crash model.
+//! Shape matching for stamped sheet parts: finds the pose that aligns the part of a stamping
+//! simulation with the same part of a crash model.
 //!
 //! The product of a match is `target_from_source`, the similarity of
 //! `crash = c · R · stamped + t` in column vectors. *The paper* is "A Shape-Matching Algorithm for deep

@@ -1,7 +1,7 @@
 //! Progress, stop and cancel for everything that takes long.
 //!
-//! A [`Monitor`] is handed down into every loop whose length grows with the mesh. The loop asks it
-//! once per chunk of work; chunks are small enough that an answer comes within 100 ms.
+//! A [`Monitor`] is handed down into every loop whose length grows with the mesh, and asked once per chunk of work;
+//! in settling it is asked between the steps. Chunks are meant to be small enough for an answer within 100 ms.
 //! *Stop* means "end early and keep the best result so far"; *cancel* means "end and forget".
 
 use std::sync::Arc;

@@ -2,8 +2,8 @@
 //! about it comes after.
 
 use super::{
-    AppState, Command, Dialog, Effect, FreeWindow, MatchCommand, NoticeCommand, Section, Settings,
-    ViewCommand,
+    AppState, Command, Dialog, Effect, FreeWindow, LogStep, MatchCommand, NoticeCommand, Section,
+    Settings, ViewCommand,
 };
 use crate::role::Role;
 
@@ -78,7 +78,9 @@ impl AppState {
             Command::Notice(command) => match command {
                 NoticeCommand::Dismiss(id) => work.log.notices.dismiss(id),
                 NoticeCommand::MarkRead => work.log.notices.mark_read(),
-                NoticeCommand::Tell(level, text) => work.log_at(level, "window", None, text, None),
+                NoticeCommand::Tell(level, text) => {
+                    work.log_at(level, LogStep::Window, None, text, None);
+                }
             },
             Command::Settings(settings) => return self.apply_settings(*settings),
             Command::Job(event) => return self.take_job_event(*event),

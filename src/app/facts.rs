@@ -1,5 +1,6 @@
 //! What the log says about the results of the pipeline, in one line each.
 
+use super::LogStep;
 use super::NoticeLevel;
 use crate::assess::{Ambiguity, Coverage, Verdict};
 use crate::formats::{Diagnostic, Severity};
@@ -113,7 +114,7 @@ pub(super) fn match_level(run: &MatchRun) -> NoticeLevel {
 }
 
 /// The phases of a match before its last one, for the log.
-pub(super) fn match_steps(run: &MatchRun) -> Vec<(&'static str, String, Duration)> {
+pub(super) fn match_steps(run: &MatchRun) -> Vec<(LogStep, String, Duration)> {
     let took = |ms: f64| Duration::try_from_secs_f64(ms / 1e3).unwrap_or_default();
     let PerRole { crash, stamped } = run.n_triangles.map(grouped);
     let times = &run.times;
@@ -122,22 +123,22 @@ pub(super) fn match_steps(run: &MatchRun) -> Vec<(&'static str, String, Duration
     let iterations = counted(iterations, "iteration");
     let searched = format!("{iterations} on {crash} and {stamped} triangles");
     let mut steps = vec![
-        ("align", n_starts, took(times.align_ms)),
-        ("match", searched, took(times.match_ms)),
+        (LogStep::Align, n_starts, took(times.align_ms)),
+        (LogStep::Match, searched, took(times.match_ms)),
         (
-            "settle",
+            LogStep::Settle,
             "borders, holes and bends on the full meshes".to_owned(),
             took(times.settle_ms),
         ),
         (
-            "verify",
+            LogStep::Verify,
             "on the full meshes".to_owned(),
             took(times.verify_ms),
         ),
     ];
     if times.reduce_ms > 0.0 {
         let text = format!("{crash} and {stamped} triangles");
-        steps.insert(0, ("reduce", text, took(times.reduce_ms)));
+        steps.insert(0, (LogStep::Reduce, text, took(times.reduce_ms)));
     }
     steps
 }

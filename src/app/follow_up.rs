@@ -1,4 +1,4 @@
-//! What a change in one topic asks of the others: the only place where topics meet.
+//! What a change in one topic asks of the others.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;

@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::mapping::{FURTHER_WITHOUT_POSE, NewFurther, take_compared, take_mapped};
 use super::parts::NewPart;
 use super::reduce::take_level_measured;
-use super::{AppState, Effect, NoticeLevel};
+use super::{AppState, Effect, LogStep, NoticeLevel};
 use crate::jobs::{FoundCrash, JobEvent, JobKey, JobOutput, JobStage, Live, Stamp};
 use crate::role::Role;
 use crate::text::{capital, parts_by_id};
@@ -208,7 +208,7 @@ impl AppState {
         };
         // The row of the selection has the time; told twice, it would be counted twice.
         let own = found.is_none().then_some(took);
-        work.log_at(level, "match", None, text, own);
+        work.log_at(level, LogStep::Match, None, text, own);
         if let Some(FoundCrash { part, facts, .. }) = found {
             let new = NewPart {
                 role: Role::Crash,
@@ -284,22 +284,22 @@ impl AppState {
 }
 
 /// The word and the part of a job in the log.
-fn step_of(key: JobKey) -> (&'static str, Option<Role>) {
+fn step_of(key: JobKey) -> (LogStep, Option<Role>) {
     match key {
-        JobKey::Load(role) => ("load", Some(role)),
-        JobKey::Reselect(role) => ("select", Some(role)),
-        JobKey::Reduce(role) => ("reduce", Some(role)),
-        JobKey::MeasureLevel(role) => ("measure", Some(role)),
-        JobKey::Align => ("align", None),
-        JobKey::Match => ("match", None),
-        JobKey::Verdict => ("judge", None),
-        JobKey::Measure | JobKey::Overlap => ("measure", None),
-        JobKey::Compare => ("compare", None),
-        JobKey::LoadFurther(_) => ("load", Some(Role::Stamped)),
-        JobKey::PlaceFurther => ("match", None),
-        JobKey::Map | JobKey::CompareMapping => ("map", None),
-        JobKey::Sweep => ("sweep", None),
-        JobKey::OpenProject => ("project", None),
-        JobKey::Export => ("export", None),
+        JobKey::Load(role) => (LogStep::Load, Some(role)),
+        JobKey::Reselect(role) => (LogStep::Select, Some(role)),
+        JobKey::Reduce(role) => (LogStep::Reduce, Some(role)),
+        JobKey::MeasureLevel(role) => (LogStep::Measure, Some(role)),
+        JobKey::Align => (LogStep::Align, None),
+        JobKey::Match => (LogStep::Match, None),
+        JobKey::Verdict => (LogStep::Judge, None),
+        JobKey::Measure | JobKey::Overlap => (LogStep::Measure, None),
+        JobKey::Compare => (LogStep::Compare, None),
+        JobKey::LoadFurther(_) => (LogStep::Load, Some(Role::Stamped)),
+        JobKey::PlaceFurther => (LogStep::Match, None),
+        JobKey::Map | JobKey::CompareMapping => (LogStep::Map, None),
+        JobKey::Sweep => (LogStep::Sweep, None),
+        JobKey::OpenProject => (LogStep::Project, None),
+        JobKey::Export => (LogStep::Export, None),
     }
 }

@@ -5,7 +5,7 @@
 //! `matching`, `mapping`, `moving`, `pairs`, `inspect`, `view`, `export`, `project`, `history` and `log`
 //! each have their commands, their own state and what follows from them. A topic is lent its own state
 //! and the work (document, history, jobs, preferences, messages), nothing else; what other topics must do
-//! after a change, it states as a `FollowUp`, and `follow_up.rs` is the only place where topics meet.
+//! after a change, it states as a `FollowUp`. `apply.rs` and `follow_up.rs` are the two places where topics meet.
 //! Nothing here draws, waits or touches the disk, so every behaviour of the window has a test without one.
 
 mod action;
@@ -52,8 +52,8 @@ pub use inspect::{
 };
 pub use job_board::{JobBoard, RunningJob};
 pub use log::{
-    Clock, Log, LogRow, LogState, Notice, NoticeCommand, NoticeId, NoticeLevel, Notices, Showing,
-    age_text, clock_text, duration_text,
+    Clock, Log, LogRow, LogState, LogStep, Notice, NoticeCommand, NoticeId, NoticeLevel, Notices,
+    Showing, age_text, clock_text, duration_text,
 };
 pub use mapping::{
     DoubtfulElement, FileShare, Further, FurtherPose, MapCommand, MapDisplay, MapPicture,

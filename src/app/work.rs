@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use super::follow_up::FollowUp;
 use super::{
-    Action, Document, Effect, GestureId, History, JobBoard, LogState, NoticeLevel, Previews,
-    Reason, Settings, Showing, StampedPose,
+    Action, Document, Effect, GestureId, History, JobBoard, LogState, LogStep, NoticeLevel,
+    Previews, Reason, Settings, Showing, StampedPose,
 };
 use crate::geometry::Similarity;
 use crate::jobs::{JobKey, JobKind};
@@ -78,7 +78,7 @@ impl Work<'_> {
     /// Adds a row to the log.
     pub fn log_step(
         &mut self,
-        step: &'static str,
+        step: LogStep,
         role: Option<Role>,
         text: impl Into<String>,
         took: Option<Duration>,
@@ -90,7 +90,7 @@ impl Work<'_> {
     pub fn log_at(
         &mut self,
         level: NoticeLevel,
-        step: &'static str,
+        step: LogStep,
         role: Option<Role>,
         text: impl Into<String>,
         took: Option<Duration>,

@@ -128,9 +128,6 @@ pub enum Reason {
         #[serde(default)]
         rivals_sought: bool,
     },
-    /// A sentence of a project from a version that stored words instead of reasons.
-    #[serde(untagged)]
-    Sentence(String),
 }
 
 impl Reason {
@@ -158,8 +155,6 @@ impl Reason {
             | Self::OthersNotSought
             | Self::Stopped
             | Self::ReadErrors { .. } => Verdict::Check,
-            // Such a sentence stands beside the verdict it belonged to, which is stored too.
-            Self::Sentence(_) => Verdict::Check,
             Self::OppositeHand { .. }
             | Self::SeveralParts { .. }
             | Self::DifferentUnits { .. }

@@ -123,7 +123,6 @@ impl Reason {
                     "other poses were not looked for everywhere"
                 }
             ),
-            Self::Sentence(text) => text.clone(),
         }
     }
 }

@@ -279,16 +279,11 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     )?;
     let is_withheld = args.output.strict && is_short(&args.output, &record);
     let files = files.filter(|_| !is_withheld);
-    let mut written: Vec<(PathBuf, Vec<u8>)> = Vec::new();
-    if let Some(files) = &files {
-        let all = files.files.iter();
-        written.extend(all.map(|file| (file.path.clone(), file.bytes.clone())));
-    }
     let outputs = &args.output;
     let about = (&run, &record, &placed[..], other.as_ref());
-    written.extend(tables(outputs, &crash, about, &monitor)?);
+    let tables = tables(outputs, &crash, about, &monitor)?;
     drop(monitor);
-    finish(outputs, &record, files.as_ref(), &written)
+    finish(outputs, &record, files.as_ref(), &tables)
 }
 
 /// Tables and pages about a mapping, with where they go.
@@ -326,7 +321,7 @@ fn finish(
     outputs: &MapOutputArgs,
     record: &MapRecord,
     files: Option<&MapFiles>,
-    written: &[(PathBuf, Vec<u8>)],
+    tables: &[(PathBuf, Vec<u8>)],
 ) -> anyhow::Result<ExitCode> {
     let mut failed: Vec<PathBuf> = Vec::new();
     let mut note = |path: &Path, written: anyhow::Result<()>| {
@@ -335,7 +330,10 @@ fn finish(
             failed.push(path.to_path_buf());
         }
     };
-    for (path, bytes) in written {
+    for file in files.iter().flat_map(|files| &files.files) {
+        note(&file.path, write_output(&file.path, &file.bytes));
+    }
+    for (path, bytes) in tables {
         note(path, write_output(path, bytes));
     }
     if let Some(path) = &outputs.json {

@@ -377,23 +377,6 @@ mod tests {
     }
 
     #[test]
-    fn earlier_spellings_are_understood() {
-        let line = "--keep trimmed --overlap 0.5 --pairs node --points-of crash --widen no \
-                    --race-points 99 --finish no --search race --initial-pose";
-        let pose = "1 0 0 5 0 1 0 0 0 0 1 0 0 0 0 1".to_owned();
-        let words = "shapematch match a b ".to_owned() + line;
-        let words = words.split_whitespace().map(String::from);
-        let asked = understood(&words.chain([pose]).collect::<Vec<_>>());
-        let settings = &asked.recipe.settings;
-        assert_eq!(settings.selection, Selection::Trimmed { overlap: 0.5 });
-        assert_eq!(settings.pair_with, PairWith::Node);
-        assert_eq!(settings.data_side, DataSide::Target);
-        assert!(!settings.starts.wide_search && !settings.refine_on_full);
-        assert_eq!(settings.n_coarse_points, 99);
-        assert_eq!(asked.current.translation.x, 5.0);
-    }
-
-    #[test]
     fn an_option_without_effect_is_refused() {
         let words = "shapematch match a b --method icp --lambda 2".split(' ');
         let cli = Cli::try_parse_from(words).unwrap();

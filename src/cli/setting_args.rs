@@ -104,7 +104,6 @@ fn typed<R>(rows: &'static [Setting<R>], matches: &ArgMatches) -> Vec<(&'static 
 fn arg<R: Default>(setting: &'static Setting<R>) -> Arg {
     let arg = Arg::new(setting.option)
         .long(setting.option)
-        .aliases(setting.former.iter().copied())
         .help(help(setting))
         .help_heading(setting.group.title())
         .allow_negative_numbers(true);
@@ -138,9 +137,7 @@ fn arg<R: Default>(setting: &'static Setting<R>) -> Arg {
 }
 
 fn possible(words: &ChoiceWords) -> PossibleValue {
-    PossibleValue::new(words.name)
-        .aliases(words.former)
-        .help(words.help)
+    PossibleValue::new(words.name).help(words.help)
 }
 
 /// The help of the table with range and default.
@@ -175,9 +172,7 @@ fn value<R>(setting: &Setting<R>, matches: &ArgMatches) -> Option<Value> {
     match &setting.domain {
         Domain::Choice(words) => {
             let word: &String = matches.get_one(name)?;
-            let is_it = |words: &ChoiceWords| {
-                words.name == word.as_str() || words.former.contains(&word.as_str())
-            };
+            let is_it = |words: &ChoiceWords| words.name == word.as_str();
             let found = words().into_iter().find(is_it)?;
             Some(Value::Choice(found.name))
         }

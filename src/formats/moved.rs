@@ -206,7 +206,10 @@ mod tests {
             stress: [5.0, 0.0, 0.0, 1.0, 0.0, 0.0],
             plastic_strain: 0.5,
         };
-        model.forming.add_stress(1, 1, &[point], &[9.0]).unwrap();
+        model
+            .forming
+            .add_state(1, 1, &[point], &[9.0], &[])
+            .unwrap();
         let quarter = Vector3::new(0.0, 0.0, std::f64::consts::FRAC_PI_2);
         let motion = Similarity {
             scale: 10.0,

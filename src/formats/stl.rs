@@ -242,19 +242,3 @@ pub fn write_binary(mesh: &TriMesh) -> Vec<u8> {
     }
     bytes
 }
-
-/// ASCII STL with coordinates that read back bit-equal.
-pub fn write_ascii(mesh: &TriMesh, name: &str) -> Vec<u8> {
-    let name = name.lines().next().unwrap_or_default();
-    let mut text = format!("solid {name}\n");
-    for t in 0..mesh.n_triangles() {
-        let n = mesh.normal(t);
-        text += &format!("facet normal {:?} {:?} {:?}\n outer loop\n", n.x, n.y, n.z);
-        for p in mesh.corners(t) {
-            text += &format!("  vertex {:?} {:?} {:?}\n", p.x, p.y, p.z);
-        }
-        text += " endloop\nendfacet\n";
-    }
-    text += &format!("endsolid {name}\n");
-    text.into_bytes()
-}

@@ -11,7 +11,6 @@ mod landmarks;
 mod merged;
 mod mesh;
 mod normals;
-mod sampling;
 pub mod section;
 pub mod serial;
 mod similarity;
@@ -29,7 +28,6 @@ pub use landmarks::{Hole, Landmarks};
 pub use merged::MergedMesh;
 pub use mesh::{MeshError, TriMesh};
 pub use normals::{CornerNormals, VertexFans, corner_normals, face_normals};
-pub use sampling::{SurfaceSample, sample_surface};
 pub use section::{
     Gap, OutlineGap, OutlineGaps, Plane, SectionLine, gap_at, gap_to_nearest, nearest_on_lines,
     outline_gaps, section,

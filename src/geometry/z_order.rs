@@ -8,7 +8,7 @@ use super::{Aabb, Point3, Vector3};
 use crate::monitor::{Cancelled, Monitor};
 
 /// Cells along an edge of the box, less one.
-pub(crate) const LAST_CELL: f64 = 1023.0;
+const LAST_CELL: f64 = 1023.0;
 
 /// Indices of the points in the order of a Z-order curve over their box. O(n log n).
 pub fn z_order(points: &[Point3]) -> Vec<u32> {
@@ -34,7 +34,7 @@ pub fn z_order_for(points: &[Point3], monitor: &Monitor) -> Result<Vec<u32>, Can
 }
 
 /// Place on the curve of a point in cells, 0 to [`LAST_CELL`] along each axis.
-pub(crate) fn z_code(cell: &Vector3) -> u32 {
+fn z_code(cell: &Vector3) -> u32 {
     (0..3).fold(0, |code, axis| {
         code | spread_bits(cell[axis] as u32) << axis
     })

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::formats::PartSummary;
+use crate::formats::{Model, PartSummary};
 use crate::geometry::{Aabb, Landmarks, Vector3};
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::likeness::{Moments, moments_of_parts};
@@ -33,20 +33,37 @@ pub struct PartFacts {
     pub landmarks: Landmarks,
     /// Mean thickness of the matched elements, if known.
     pub thickness: Option<f64>,
-    /// How much the file looks like the end of a forming simulation: 0 not at all, 1 one part with
-    /// thickness per element, 2 with stresses or strains.
-    pub formed: u8,
+    /// How much the file looks like the end of a forming simulation.
+    pub formed: FormingEvidence,
+}
+
+/// What in a file speaks for the end of a forming simulation, the least first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum FormingEvidence {
+    /// Nothing.
+    None,
+    /// It is one part with a thickness for each element.
+    ThicknessPerElement,
+    /// It has stresses or strains.
+    Results,
+}
+
+impl FormingEvidence {
+    fn of(model: &Model) -> Self {
+        if !model.forming.is_empty() {
+            Self::Results
+        } else if model.parts.len() == 1 && !model.shell_extras.is_empty() {
+            Self::ThicknessPerElement
+        } else {
+            Self::None
+        }
+    }
 }
 
 impl PartFacts {
     /// Counts and measures. O(elements).
     pub fn of(part: &LoadedPart, monitor: &Monitor) -> Result<Self, Cancelled> {
         let (model, measures) = (&part.model, part.surface.measures());
-        let formed = if !model.forming.is_empty() {
-            2
-        } else {
-            u8::from(model.parts.len() == 1 && !model.shell_extras.is_empty())
-        };
         let parts = model.part_summaries();
         monitor.check()?;
         let part_bounds = part_bounds(part);
@@ -64,7 +81,7 @@ impl PartFacts {
             mean_normal: measures.mean_normal,
             landmarks: Landmarks::of(part.surface.mesh(), part.surface.borders()),
             thickness: part.mean_thickness(),
-            formed,
+            formed: FormingEvidence::of(model),
         })
     }
 }

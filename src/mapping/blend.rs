@@ -1,7 +1,7 @@
 //! The values of a target element from those of its partners.
 
 use super::element::Context;
-use super::field::{Field, Fields, Laid, from_local, tensor_of};
+use super::field::{Aligned, Field, Fields, from_local, tensor_of};
 use super::gather::Group;
 use super::layered::PLASTIC_STRAIN;
 use super::patch::{Seen, frame, spin};
@@ -26,7 +26,7 @@ struct Share<'a> {
     /// Area-weighted sum of places in its tangent plane.
     offset: [f64; 2],
     /// From the source element's frame into that of the target element.
-    laid: Laid,
+    aligned: Aligned,
 }
 
 /// The weighted mean of the partners' values, turned into the element's tangent plane.
@@ -62,7 +62,7 @@ impl<'a> Blend<'a> {
                 offset: fields
                     .patch
                     .in_plane(slot, &source.in_source(&group.offset)),
-                laid: laid(source, fields.patch.frame(slot), group, &own_frame),
+                aligned: aligned(source, fields.patch.frame(slot), group, &own_frame),
             })
         }));
         Self {
@@ -224,8 +224,8 @@ impl<'a> Blend<'a> {
                         layer
                     };
                     let mut value = field.weighted(share.slot, from, weight, &offset);
-                    let laid = share.laid.apply(tensor_of(&value));
-                    value[..6].copy_from_slice(&laid);
+                    let aligned = share.aligned.apply(tensor_of(&value));
+                    value[..6].copy_from_slice(&aligned);
                     let sum = &mut values[layer * n_plane + plane];
                     for (sum, value) in sum.iter_mut().zip(value) {
                         *sum += value;
@@ -244,16 +244,16 @@ impl<'a> Blend<'a> {
 
 /// The pose's rotation and after it the smallest one from the source element's tangent plane into the
 /// target element's, whose frame is `into`.
-fn laid(
+fn aligned(
     source: &PreparedSource<'_>,
     [along, ..]: &[Vector3; 3],
     group: &Group,
     into: &[Vector3; 3],
-) -> Laid {
+) -> Aligned {
     let normal = source.mesh.normals()[group.element as usize];
     let side = if group.is_flipped { -normal } else { normal };
     let along = source.pose.rotation * along;
-    Laid::new(
+    Aligned::new(
         spin([&along, &side], into),
         source.is_mirrored,
         group.is_flipped,

@@ -44,9 +44,9 @@ fn spun([mean, half, zz, xy, yz, zx]: Tensor, spin: &Spin) -> Tensor {
     ]
 }
 
-/// How the frame of a source element lies in that of a target element, once it has been laid into its plane.
+/// How the frame of a source element lies in that of a target element, once it has been turned into its plane.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Laid {
+pub(super) struct Aligned {
     /// Of its first direction.
     spin: Spin,
     /// −1 where its second direction lies on the other side of the first, because of a mirror or a flip.
@@ -55,7 +55,7 @@ pub(super) struct Laid {
     normal: f64,
 }
 
-impl Laid {
+impl Aligned {
     /// `spin` takes the first direction along; what a mirror and a flip do to the others comes before.
     pub fn new(spin: Spin, is_mirrored: bool, is_flipped: bool) -> Self {
         let sign = |is_negative| if is_negative { -1.0 } else { 1.0 };

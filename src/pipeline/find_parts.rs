@@ -356,9 +356,10 @@ pub fn mirrored_twin(
     monitor: &Monitor,
 ) -> Result<Option<Similarity>, PipelineError> {
     let mut recipe = recipe.clone();
-    recipe.settings.hand = match own.is_mirrored() {
-        true => Hand::Same,
-        false => Hand::Mirrored,
+    recipe.settings.hand = if own.is_mirrored() {
+        Hand::Same
+    } else {
+        Hand::Mirrored
     };
     let run = match_parts(parts, None, &recipe, &Similarity::identity(), monitor);
     let Ok(run) = unless_cancelled(run)? else {

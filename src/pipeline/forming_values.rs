@@ -360,7 +360,7 @@ mod tests {
             plastic_strain,
         };
         let points = [stress(-1.0, -30.0, 0.1), stress(1.0, 20.0, 0.3)];
-        model.forming.add_stress(7, 1, &points, &[]).unwrap();
+        model.forming.add_state(7, 1, &points, &[], &[]).unwrap();
         let strain = StrainPoint {
             t: 0.0,
             strain: [0.2, -0.1, -0.1, 0.0, 0.0, 0.0],

@@ -28,7 +28,6 @@ use crate::units::LengthUnit;
 pub struct MatchTimes {
     /// Matches on other crash parts while the one was looked for that the stamped part belongs to; 0 where it was
     /// given.
-    #[serde(default)]
     pub find_ms: f64,
     /// Reduction of both parts; 0 if nothing was reduced here.
     pub reduce_ms: f64,
@@ -36,8 +35,7 @@ pub struct MatchTimes {
     pub align_ms: f64,
     /// All starts, and the finish of the winner.
     pub match_ms: f64,
-    /// Borders, holes and bends on the full meshes; 0 in results of earlier versions.
-    #[serde(default)]
+    /// Borders, holes and bends on the full meshes.
     pub settle_ms: f64,
     /// The independent check.
     pub verify_ms: f64,

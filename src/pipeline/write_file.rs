@@ -65,9 +65,12 @@ pub fn write_new_file(path: &Path, bytes: &[u8]) -> Result<bool, PipelineError> 
 /// [`write_file`] into a folder that is made if need be.
 pub fn write_file_in_new_folder(path: &Path, bytes: &[u8]) -> Result<(), PipelineError> {
     let folder = folder_of(path);
-    fs::create_dir_all(folder).map_err(|error| match folder.is_file() {
-        true => failed(folder)(io::Error::other("it is a file, not a folder")),
-        false => failed(path)(error),
+    fs::create_dir_all(folder).map_err(|error| {
+        if folder.is_file() {
+            failed(folder)(io::Error::other("it is a file, not a folder"))
+        } else {
+            failed(path)(error)
+        }
     })?;
     write_file(path, bytes)
 }

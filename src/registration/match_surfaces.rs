@@ -9,27 +9,7 @@ use super::observer::MatchMonitor;
 use super::result::MatchOutcome;
 use super::same_nodes::match_same_nodes;
 use super::settings::{Hand, MatchSettings, Method};
-use super::surface::Surface;
-use crate::geometry::{Similarity, TriMesh};
-
-/// [`match_surfaces`] for bare meshes, which it prepares first.
-pub fn match_meshes<'a>(
-    source: &TriMesh,
-    target: &TriMesh,
-    settings: &MatchSettings,
-    monitor: impl Into<MatchMonitor<'a>>,
-) -> Result<MatchOutcome, RegistrationError> {
-    let (source, target) = rayon::join(
-        || Surface::new(source, "source"),
-        || Surface::new(target, "target"),
-    );
-    let input = MatchInput {
-        source: &source?,
-        target: &target?,
-        reduced: None,
-    };
-    match_surfaces(&input, settings, monitor)
-}
+use crate::geometry::Similarity;
 
 /// Finds the pose of `input.source` on `input.target`.
 ///

@@ -29,7 +29,7 @@ pub use closed_form::{Motion, PairFit, umeyama};
 pub use error::RegistrationError;
 pub use icp::{Floor, Metric, PairWith, RejectRules, Selection, Stage, Termination};
 pub use input::MatchInput;
-pub use match_surfaces::{match_meshes, match_surfaces};
+pub use match_surfaces::match_surfaces;
 pub use multi_start::starts;
 pub use multi_start::starts::{StartKind, StartMethod, StartSettings, align_surface_normals};
 pub use observer::{MatchMonitor, Observer};

@@ -28,6 +28,14 @@ impl Side {
             Self::Target => Self::Source,
         }
     }
+
+    /// With this side as the data, a pose of target from source as one of model from data, or the other way round.
+    pub(crate) fn oriented(self, pose: &Similarity) -> Similarity {
+        match self {
+            Self::Source => *pose,
+            Self::Target => pose.inverse(),
+        }
+    }
 }
 
 /// One iteration of one start.
@@ -99,7 +107,6 @@ pub struct StartRecord {
     /// Why its last stage ended, if it was not dropped.
     pub termination: Option<Termination>,
     /// What became of it; `None` while it runs, or where its match was cancelled.
-    #[serde(alias = "fate")]
     pub outcome: Option<StartOutcome>,
 }
 
@@ -148,12 +155,10 @@ pub struct MatchTimings {
     /// Time to make the first poses.
     pub align: Duration,
     /// All starts on few points.
-    #[serde(alias = "race")]
     pub coarse: Duration,
     /// The best distinct ones on more points.
     pub refine: Duration,
     /// The winner on the full meshes.
-    #[serde(alias = "finish")]
     pub full: Duration,
     /// Everything, preparation of mirrored and reduced meshes included.
     pub total: Duration,
@@ -191,8 +196,7 @@ pub struct MatchOutcome {
     /// Distinct poses that were compared in the end, best first, without the result itself.
     pub alternatives: Vec<Alternative>,
     /// True if the wide search and places of the larger part that are shaped alike were compared with
-    /// the result; else other poses may fit as well. False in results of earlier versions.
-    #[serde(default)]
+    /// the result; else other poses may fit as well.
     pub rivals_sought: bool,
     /// Where the last stage left pairs out, the pose that keeping all of them leads to from the result. Whoever
     /// assesses the result chooses between both.

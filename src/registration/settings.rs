@@ -48,7 +48,6 @@ pub enum Hand {
 pub enum Search {
     /// All starts on few points, the best distinct ones on more, the winner refined.
     #[default]
-    #[serde(alias = "race")]
     CoarseToFine,
     /// Every start on all points to its end.
     EveryStart,
@@ -89,7 +88,6 @@ pub struct MatchSettings {
     /// How they are searched.
     pub search: Search,
     /// Refine the best pose on the full meshes (else only on the reduced ones, if there are any).
-    #[serde(alias = "finish")]
     pub refine_on_full: bool,
     /// Which mesh supplies the points.
     pub data_side: DataSide,
@@ -101,12 +99,10 @@ pub struct MatchSettings {
     /// search.
     pub shape_tolerance: f64,
     /// Take a separable offset of the sheets, as between skin and mid-surface, out of the pose.
-    #[serde(default)]
     pub remove_offset: bool,
     /// Largest angle between normals of a pair in the later stages, degrees; 180 lets all through.
     pub max_normal_angle_deg: f64,
     /// Data points of the coarse stage.
-    #[serde(alias = "n_race_points")]
     pub n_coarse_points: usize,
     /// Data points of the refinement.
     pub n_refine_points: usize,

@@ -6,18 +6,18 @@ use crate::geometry::z_order_for;
 use crate::monitor::{Cancelled, Monitor};
 
 /// All vertices of the surface with the area they stand for.
-pub(crate) fn all_nodes(surface: &Surface, area_weights: bool) -> Vec<Sample> {
-    let vertices = 0..surface.mesh().n_vertices();
-    vertices
-        .map(|v| sample(surface, v, area_weights.then(|| surface.vertex_areas()[v])))
+pub(crate) fn all_nodes(surface: &Surface) -> Vec<Sample> {
+    let areas = surface.vertex_areas().iter().enumerate();
+    areas
+        .map(|(vertex, &area)| sample(surface, vertex, area))
         .collect()
 }
 
-fn sample(surface: &Surface, vertex: usize, weight: Option<f64>) -> Sample {
+fn sample(surface: &Surface, vertex: usize, weight: f64) -> Sample {
     Sample {
         point: surface.mesh().positions()[vertex],
         normal: surface.vertex_normals()[vertex],
-        weight: weight.unwrap_or(1.0),
+        weight,
     }
 }
 
@@ -31,7 +31,7 @@ pub(crate) fn subsample(
 ) -> Result<Vec<Sample>, Cancelled> {
     let mesh = surface.mesh();
     if mesh.n_vertices() <= n {
-        return Ok(all_nodes(surface, true));
+        return Ok(all_nodes(surface));
     }
     let areas = surface.vertex_areas();
     let share = areas.iter().sum::<f64>() / n as f64;
@@ -45,7 +45,7 @@ pub(crate) fn subsample(
         let passed = ((running / share + 0.5).floor() as usize).min(n);
         if passed > taken {
             let weight = share * (passed - taken) as f64;
-            samples.push(sample(surface, vertex as usize, Some(weight)));
+            samples.push(sample(surface, vertex as usize, weight));
             taken = passed;
         }
     }

@@ -9,7 +9,7 @@ use crate::geometry::{Aabb, Matrix3, MatrixError, Point3, Similarity, Vector3};
 
 pub use super::card_reader::{ReadBackError, read_back};
 
-/// A set of cards that lays the stamped part on the crash part.
+/// A set of cards that aligns the stamped part with the crash part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum CardForm {
     /// `*INCLUDE_STAMPED_PART_MATRIX`: the solver maps the forming results.
@@ -160,12 +160,6 @@ impl Cards {
     /// stamped part. The distance is largest at corners of any convex hull.
     pub fn largest_node_error<'a>(&self, points: impl IntoIterator<Item = &'a Point3>) -> f64 {
         self.asked.max_displacement(&self.read_back, points)
-    }
-
-    /// Largest entry of |RᵀR − I| of the rotation as it reads back.
-    pub fn orthogonality_error(&self) -> f64 {
-        let r = self.read_back.rotation;
-        (r.transpose() * r - Matrix3::identity()).amax()
     }
 }
 

@@ -57,7 +57,7 @@ pub struct ScenarioPair {
     pub crash: TriMesh,
     /// The moving side.
     pub stamped: TriMesh,
-    /// The pose that lays the stamped side on the crash side; `None` where the shapes differ, so that
+    /// The pose that aligns the stamped side with the crash side; `None` where the shapes differ, so that
     /// none is true.
     pub crash_from_stamped: Option<Similarity>,
     /// How far the surfaces lie off each other at the true pose because they were disturbed: largest

@@ -21,6 +21,7 @@ const UNLIMITED: f32 = 1e30;
 /// Walks with a deeper stack than this take it from the heap.
 const USUAL_STACK: usize = 64;
 
+/// Candidates that are kept before they are decided in `f64`.
 const MAX_CANDIDATES: usize = 16;
 
 /// How far an `f32` distance from `local` can be off: the rounding of the query, of the items and

@@ -5,8 +5,6 @@
 pub struct ChoiceWords {
     /// Name on the command line and in records.
     pub name: &'static str,
-    /// Earlier names, still understood.
-    pub former: &'static [&'static str],
     /// Short name for menus and reports.
     pub label: &'static str,
     /// One line of help, without a full stop.
@@ -36,10 +34,9 @@ pub trait Choice: Copy + PartialEq + Send + Sync + 'static {
         self.words().help
     }
 
-    /// The value of a name, also of an earlier one, with its usual parameters.
+    /// The value of a name, with its usual parameters.
     fn from_name(name: &str) -> Option<Self> {
-        let is_it = |words: ChoiceWords| words.name == name || words.former.contains(&name);
-        Self::ALL.iter().copied().find(|one| is_it(one.words()))
+        Self::ALL.iter().copied().find(|one| one.name() == name)
     }
 
     /// The words of every value.

@@ -6,11 +6,11 @@ use crate::registration::{
     DataSide, Floor, Hand, Method, Metric, Motion, PairWith, Search, Selection, StartMethod,
 };
 
-/// One table: the value, with the parameters it has in menus, then name (and earlier names), label, help.
+/// One table: the value, with the parameters it has in menus, then name, label, help.
 macro_rules! choices {
     ($type:ty: $(
         $variant:ident $({ $($field:ident: $value:expr),* })? =>
-        $name:literal $(($former:literal))*, $label:literal, $help:literal;
+        $name:literal, $label:literal, $help:literal;
     )*) => {
         impl Choice for $type {
             const ALL: &'static [Self] = &[$(Self::$variant $({ $($field: $value),* })?),*];
@@ -19,7 +19,6 @@ macro_rules! choices {
                 match self {
                     $(Self::$variant { .. } => ChoiceWords {
                         name: $name,
-                        former: &[$($former),*],
                         label: $label,
                         help: $help,
                     },)*
@@ -109,7 +108,7 @@ choices! { Hand:
 }
 
 choices! { Search:
-    CoarseToFine => "coarse-to-fine" ("race"), "Coarse to fine",
+    CoarseToFine => "coarse-to-fine", "Coarse to fine",
         "All starts on few points; only the best distinct ones are refined";
     EveryStart => "every-start", "Every start to convergence",
         "All starts on all points, as in the paper; slow";

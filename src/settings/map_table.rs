@@ -9,7 +9,6 @@ pub static MAP_SETTINGS: [Setting<MapOptions>; 10] = [
     Setting {
         field: "method",
         option: "method",
-        former: &[],
         key: "method",
         label: "Method",
         help: "How values are transferred",
@@ -20,7 +19,6 @@ pub static MAP_SETTINGS: [Setting<MapOptions>; 10] = [
     Setting {
         field: "max_distance",
         option: "max-distance",
-        former: &[],
         key: "max_distance",
         label: "Largest distance",
         help: "Largest distance of a partner, in the crash model's unit; auto is the element size",
@@ -31,7 +29,6 @@ pub static MAP_SETTINGS: [Setting<MapOptions>; 10] = [
     Setting {
         field: "max_angle_deg",
         option: "max-angle",
-        former: &[],
         key: "max_angle_deg",
         label: "Largest angle",
         help: "Largest angle between the normals of an element and its partner",
@@ -46,7 +43,6 @@ pub static MAP_SETTINGS: [Setting<MapOptions>; 10] = [
     Setting {
         field: "normal_sense",
         option: "signed",
-        former: &[],
         key: "normal_sense",
         label: "Normals",
         help: "Whether normals must point to the same side",
@@ -57,7 +53,6 @@ pub static MAP_SETTINGS: [Setting<MapOptions>; 10] = [
     Setting {
         field: "overlap",
         option: "overlap",
-        former: &[],
         key: "overlap",
         label: "Overlap",
         help: "Which stamped part an element takes its values from where several overlap",
@@ -68,7 +63,6 @@ pub static MAP_SETTINGS: [Setting<MapOptions>; 10] = [
     Setting {
         field: "keep_force_and_moment",
         option: "layer-balance",
-        former: &[],
         key: "keep_force_and_moment",
         label: "Keep force and moment",
         help: "Keep membrane force and moment of the stresses where the layers differ",
@@ -79,7 +73,6 @@ pub static MAP_SETTINGS: [Setting<MapOptions>; 10] = [
     Setting {
         field: "fill_rings",
         option: "fill",
-        former: &[],
         key: "fill_rings",
         label: "Rings to fill",
         help: "Rings of unmapped elements to be filled with the mean thickness and plastic strain of mapped \
@@ -91,7 +84,6 @@ pub static MAP_SETTINGS: [Setting<MapOptions>; 10] = [
     Setting {
         field: "thickness_scale",
         option: "thickness-scale",
-        former: &[],
         key: "thickness_scale",
         label: "Thickness factor",
         help: "Factor on the mapped thickness",
@@ -106,7 +98,6 @@ pub static MAP_SETTINGS: [Setting<MapOptions>; 10] = [
     Setting {
         field: "corner_thickness",
         option: "corner-thickness",
-        former: &[],
         key: "corner_thickness",
         label: "Thickness at corners",
         help: "Thickness at each corner instead of one for the element",
@@ -117,7 +108,6 @@ pub static MAP_SETTINGS: [Setting<MapOptions>; 10] = [
     Setting {
         field: "replace_states",
         option: "replace-states",
-        former: &[],
         key: "replace_states",
         label: "Replace old states",
         help: "Write copies of the crash deck without the initial stresses and strains of mapped elements",

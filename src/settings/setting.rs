@@ -13,8 +13,6 @@ pub struct Setting<R: 'static = MatchRecipe> {
     pub field: &'static str,
     /// Option of the command line, without hyphens.
     pub option: &'static str,
-    /// Earlier options, still understood.
-    pub former: &'static [&'static str],
     /// Key in the parameters of a record.
     pub key: &'static str,
     /// Label in the window and in reports.

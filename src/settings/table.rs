@@ -31,7 +31,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.method",
         option: "method",
-        former: &[],
         key: "method",
         label: "Method",
         help: "Registration method; the options below change single choices of it",
@@ -42,7 +41,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.starts.method",
         option: "start",
-        former: &[],
         key: "start_method",
         label: "Start",
         help: "Where the match starts from; the default is current if one --start-pose is given",
@@ -53,7 +51,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.starts.angle_segment_deg",
         option: "angle-segment",
-        former: &[],
         key: "angle_segment_deg",
         label: "Rotation step",
         help: "Angle between neighbouring rotations about the mean normal; 40° gives nine, as in the paper",
@@ -64,7 +61,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.starts.both_signs",
         option: "both-directions",
-        former: &[],
         key: "both_directions",
         label: "Both normal directions",
         help: "Try both directions of the mean normal",
@@ -75,7 +71,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.starts.wide_search",
         option: "wide-search",
-        former: &["extra-starts", "widen"],
         key: "wide_search",
         label: "Wide search",
         help: "Also search all rotations, both normal directions and all places, with the surface normals of patches aligned; the best are further starts",
@@ -86,7 +81,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.starts.poses",
         option: "start-pose",
-        former: &["initial-pose"],
         key: "start_poses",
         label: "Given poses",
         help: "A start pose (crash from stamped): a text file, or its numbers, 16 by rows. Several poses are all tried. A rigid match keeps the scale of its start",
@@ -97,7 +91,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.data_side",
         option: "data",
-        former: &["points-of"],
         key: "points_of",
         label: "Data points",
         help: "The part whose nodes are paired with the other part's surface",
@@ -108,7 +101,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.pair_with",
         option: "correspondence",
-        former: &["pairs"],
         key: "pairs",
         label: "Correspondence",
         help: "What a data point is paired with",
@@ -119,7 +111,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.selection",
         option: "pair-selection",
-        former: &["keep"],
         key: "selection",
         label: "Pair selection",
         help: "Which pairs are kept",
@@ -130,7 +121,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.selection.lambda",
         option: "lambda",
-        former: &[],
         key: "lambda",
         label: "λ",
         help: "Exponent λ of Fractional ICP; a larger one keeps more pairs",
@@ -141,7 +131,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.selection.floor",
         option: "floor",
-        former: &[],
         key: "floor_setting",
         label: "Floor σ₀",
         help: "Floor σ₀ of Fractional ICP: a length, none, or auto (estimated from the meshes)",
@@ -152,7 +141,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.selection.overlap",
         option: "overlap",
-        former: &[],
         key: "trimmed_overlap",
         label: "Overlap",
         help: "Fraction of the pairs that Trimmed ICP keeps; estimated if not given",
@@ -163,7 +151,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.metric",
         option: "residual",
-        former: &[],
         key: "residual",
         label: "Residual",
         help: "The residual that is minimised",
@@ -174,7 +161,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.motion",
         option: "motion",
-        former: &[],
         key: "motion",
         label: "Motion",
         help: "What may change: the pose, or also the scale",
@@ -185,7 +171,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.hand",
         option: "hand",
-        former: &[],
         key: "hand",
         label: "Hand",
         help: "Try the part as is, mirrored, or both",
@@ -196,7 +181,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.max_normal_angle_deg",
         option: "normal-angle",
-        former: &[],
         key: "max_normal_angle_deg",
         label: "Normal angle",
         help: "Maximum angle between the normals of a pair; 180° accepts all pairs",
@@ -207,7 +191,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.allowance",
         option: "allowance",
-        former: &[],
         key: "allowance",
         label: "Offset tolerance",
         help: "Expected deviation besides faceting, such as springback",
@@ -218,7 +201,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.shape_tolerance",
         option: "shape-tolerance",
-        former: &[],
         key: "shape_tolerance",
         label: "Shape tolerance",
         help: "How far the shapes may differ besides springback; 0 takes the larger of 1 mm and the thickness",
@@ -229,7 +211,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.remove_offset",
         option: "remove-offset",
-        former: &[],
         key: "remove_offset",
         label: "Remove offset",
         help: "Take an offset of the sheets along their normals, as between skin and mid-surface, out of the pose where it can be distinguished from a shift",
@@ -240,7 +221,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.search",
         option: "search",
-        former: &[],
         key: "search",
         label: "Search",
         help: "How the starts are searched",
@@ -251,7 +231,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.n_coarse_points",
         option: "coarse-points",
-        former: &["race-points"],
         key: "race_points",
         label: "Coarse points",
         help: "Data points of the first stage",
@@ -262,7 +241,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.n_refine_points",
         option: "refine-points",
-        former: &[],
         key: "refine_points",
         label: "Refine points",
         help: "Data points of the second stage",
@@ -273,7 +251,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.max_iterations",
         option: "iterations",
-        former: &[],
         key: "max_iterations",
         label: "Max. iterations",
         help: "Maximum iterations per run",
@@ -284,7 +261,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.motion_tolerance",
         option: "tolerance",
-        former: &[],
         key: "motion_tolerance",
         label: "Tolerance",
         help: "Converged when no bounding-box corner moves by more than this fraction of an edge length",
@@ -295,7 +271,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "max_triangles",
         option: "triangles",
-        former: &[],
         key: "search_triangles",
         label: "Search triangles",
         help: "Run the starts on meshes reduced to this many triangles, as in the paper",
@@ -306,7 +281,6 @@ pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.refine_on_full",
         option: "refine-on-full",
-        former: &["finish"],
         key: "finish_on_full",
         label: "Refine on full meshes",
         help: "Refine the best pose on the full meshes",

@@ -74,6 +74,7 @@ fn no_name_twice<R>(rows: &[Setting<R>]) {
     };
     let all = |name: fn(&Setting<R>) -> &'static str| rows.iter().map(name).collect::<Vec<_>>();
     for names in [
+        all(|row| row.option),
         all(|row| row.key),
         all(|row| row.label),
         all(|row| row.help),
@@ -81,11 +82,6 @@ fn no_name_twice<R>(rows: &[Setting<R>]) {
         let (n, n_different) = count(names.clone());
         assert_eq!(n, n_different, "{names:?}");
     }
-    let options = rows
-        .iter()
-        .flat_map(|row| row.former.iter().chain([&row.option]));
-    let (n, n_different) = count(options.copied().collect());
-    assert_eq!(n, n_different);
     for row in rows {
         assert!(
             !row.help.ends_with('.') && !row.help.is_empty(),
@@ -99,16 +95,9 @@ fn no_name_twice<R>(rows: &[Setting<R>]) {
 fn check_choice<T: Choice + std::fmt::Debug>() {
     let mut seen = BTreeSet::new();
     for choice in T::ALL {
-        let ChoiceWords {
-            name,
-            former,
-            label,
-            help,
-        } = choice.words();
-        for name in former.iter().chain([&name]) {
-            assert_eq!(T::from_name(name), Some(*choice));
-            assert!(seen.insert(*name), "{name} stands twice");
-        }
+        let ChoiceWords { name, label, help } = choice.words();
+        assert_eq!(T::from_name(name), Some(*choice));
+        assert!(seen.insert(name), "{name} stands twice");
         assert!(seen.insert(label) && !help.ends_with('.'), "{choice:?}");
     }
     assert_eq!(T::from_name("no such choice"), None);

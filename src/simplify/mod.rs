@@ -16,7 +16,6 @@
 //! threads, and nearly equal prices are decided by the order of the edges, so the same mesh always
 //! gives the same result.
 
-mod border;
 mod decimator;
 mod intake;
 mod legality;
@@ -27,7 +26,6 @@ mod sequence;
 mod settings;
 mod surface;
 
-pub use border::{BorderDeviation, border_deviation};
 pub use sequence::CollapseSequence;
 pub use settings::{
     Placement, Simplified, SimplifyError, SimplifyReport, SimplifySettings, Speed, StopReason,

@@ -340,7 +340,10 @@ fn two_files_without_roles_are_sorted_by_content() {
     let paths = ["stamped.k", "crash.k"].map(PathBuf::from).to_vec();
     window.apply(FileCommand::Open { paths, role: None });
     assert_eq!(window.part(Role::Crash).facts.parts.len(), 2);
-    assert_eq!(window.part(Role::Stamped).facts.formed, 1);
+    assert_eq!(
+        window.part(Role::Stamped).facts.formed,
+        FormingEvidence::ThicknessPerElement
+    );
     let offers_swap = |n: &Notice| n.offer == Some(Action::Swap);
     assert!(window.state.log.notices.toasts().any(offers_swap));
     let before = window.mesh(Role::Crash);
@@ -425,9 +428,9 @@ fn a_deck_of_several_parts_asks_which_of_them_is_matched() {
 fn a_result_is_a_toast_only_where_its_card_is_not_seen() {
     let mut window = Window::with_both_and_no_rivals();
     window.act(Action::MatchOrStop);
-    assert!(window.state.log.latest("result").is_some());
+    assert!(window.state.log.latest(LogStep::Result).is_some());
     assert_eq!(window.state.log.notices.toasts().count(), 0);
-    let line = &window.state.log.latest("result").unwrap().text;
+    let line = &window.state.log.latest(LogStep::Result).unwrap().text;
     let has_it = |notice: &Notice| notice.text == *line;
     assert!(window.state.log.notices.kept().any(has_it), "in the bell");
     window.apply(ViewCommand::OpenSection(Section::Match, false));
@@ -853,7 +856,10 @@ fn back_to_the_result_is_in_the_log() {
     window.apply(MoveCommand::Flip(Axis::X));
     window.apply(MatchCommand::ShowAlternative(None));
     assert_eq!(window.pose(), shifted(1.0));
-    assert_eq!(window.state.log.latest("match").unwrap().text, "Best pose");
+    assert_eq!(
+        window.state.log.latest(LogStep::Match).unwrap().text,
+        "Best pose"
+    );
 }
 
 #[test]
@@ -866,7 +872,7 @@ fn a_file_that_ends_a_result_says_so_and_offers_the_way_back() {
     let offers = |notice: &&Notice| notice.offer == Some(Action::Undo);
     let toasts = |window: &Window| window.state.log.notices.toasts().filter(offers).count();
     assert_eq!(toasts(&window), 1);
-    let told = &window.state.log.latest("load").unwrap().text;
+    let told = &window.state.log.latest(LogStep::Load).unwrap().text;
     assert!(told.contains("ended the result of the match"), "{told}");
     // After another step, undo would take that one back.
     window.apply(MoveCommand::Flip(Axis::X));
@@ -1032,7 +1038,7 @@ fn moves_by_hand_are_in_the_log_with_their_unit() {
     window.open("stamped.k", Role::Stamped);
     assert_eq!(window.state.document.unit_suffix(), " mm");
     let last = |window: &Window| {
-        let row = window.state.log.latest("move");
+        let row = window.state.log.latest(LogStep::Move);
         row.map(|row| row.text.clone())
     };
     assert_eq!(last(&window), None);
@@ -1331,7 +1337,7 @@ fn the_example_loads_from_the_program_itself() {
             panic!("not loaded");
         };
         assert!(part.mesh.n_triangles() > 1000);
-        assert_eq!(facts.formed > 0, role == Role::Stamped);
+        assert_eq!(facts.formed > FormingEvidence::None, role == Role::Stamped);
         window.apply(FileCommand::DismissUnitHint);
     }
 }
@@ -1563,11 +1569,18 @@ fn the_papers_story_with_the_real_worker() {
             settle(&mut state, &worker, effects);
         }
     }
-    let rows: Vec<&str> = state.log.rows().iter().map(|row| row.step).collect();
+    let rows: Vec<LogStep> = state.log.rows().iter().map(|row| row.step).collect();
     for step in [
-        "load", "reduce", "measure", "align", "match", "settle", "verify", "result",
+        LogStep::Load,
+        LogStep::Reduce,
+        LogStep::Measure,
+        LogStep::Align,
+        LogStep::Match,
+        LogStep::Settle,
+        LogStep::Verify,
+        LogStep::Result,
     ] {
-        assert!(rows.contains(&step), "{step} is not in {rows:?}");
+        assert!(rows.contains(&step), "{step:?} is not in {rows:?}");
     }
     let truth = shapematch::samples::bundled();
     let truth = truth.iter().find(|file| file.name == "truth.json").unwrap();

@@ -1,8 +1,8 @@
 //! Section 4 of the window without a window: mapping, its colours, undo, and what is written.
 
 use shapematch::app::{
-    Action, ColorBy, Effect, ExportCommand, FreeWindow, HistoryCommand, MapCommand, MoveCommand,
-    Quantity,
+    Action, ColorBy, Effect, ExportCommand, FreeWindow, HistoryCommand, LogStep, MapCommand,
+    MoveCommand, Quantity,
 };
 use shapematch::jobs::{JobKind, JobOutput, PipelineRunner, Runner as _};
 use shapematch::mapping::Status;
@@ -606,7 +606,7 @@ fn an_include_of_the_window_never_replaces_a_file_that_is_read() {
         path: path.clone(),
     });
     assert!(path.exists() && beside.exists());
-    assert!(window.state.log.latest("export").is_some());
+    assert!(window.state.log.latest(LogStep::Export).is_some());
 }
 
 #[test]

@@ -2,8 +2,8 @@
 //! elements, and what is told after writing.
 
 use shapematch::app::{
-    Action, ColorBy, Effect, ExportCommand, FileCommand, HistoryCommand, MapCommand, MapPicture,
-    Section, ViewCommand,
+    Action, ColorBy, Effect, ExportCommand, FileCommand, HistoryCommand, LogStep, MapCommand,
+    MapPicture, Section, ViewCommand,
 };
 use shapematch::mapping::{MapMethod, Status};
 use shapematch::monitor::Monitor;
@@ -199,7 +199,7 @@ fn the_message_after_writing_says_what_was_written_and_what_it_replaces() {
         assert!(text.contains(&words), "{words} is not in {text}");
     }
     // The row of the log still names the file alone, which it opens.
-    let row = window.state.log.latest("export").unwrap();
+    let row = window.state.log.latest(LogStep::Export).unwrap();
     assert_eq!(row.text, format!("written: {}", path.display()));
     window.apply(ExportCommand::Write {
         kind: Output::Mapped(WriteKind::Include),

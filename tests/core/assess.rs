@@ -386,7 +386,6 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
             in_source: 1,
             in_target: 2,
         },
-        Reason::Sentence("the shapes differ".to_owned()),
     ];
     let good = Reason::InOrder {
         overlap: 0.98,

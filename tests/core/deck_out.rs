@@ -128,7 +128,7 @@ fn add_forming(model: &mut Model, first: u64) {
     let history: Vec<f64> = (0..14).map(|i| f64::from(i) / 7.0).collect();
     model
         .forming
-        .add_stress(first, 1, &[stress(-1.0), stress(1.0)], &history)
+        .add_state(first, 1, &[stress(-1.0), stress(1.0)], &history, &[])
         .unwrap();
     let strain = |t: f64| StrainPoint {
         t,

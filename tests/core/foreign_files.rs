@@ -9,6 +9,8 @@ use shapematch::formats::{
 use shapematch::geometry::{Point3, TriMesh};
 use shapematch::monitor::Monitor;
 
+use super::mesh_files::ascii_stl;
+
 fn read(name: &str, bytes: impl Into<Vec<u8>>) -> Result<Model, FormatError> {
     let files = Memory::new().with(name, bytes);
     let options = ReadOptions::default();
@@ -154,7 +156,7 @@ fn included_files_are_named_in_the_same_way() {
 
 #[test]
 fn content_counts_and_the_name_is_told() {
-    let ascii = stl::write_ascii(&square(), "x");
+    let ascii = ascii_stl(&square(), "x");
     let cases = [
         ("deck.stl", DECK.as_bytes().to_vec(), 1),
         ("shape.k", ascii.clone(), 2),

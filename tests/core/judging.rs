@@ -42,7 +42,7 @@ fn a_tolerance_judges_anew_as_a_new_match_would() {
     let (pose, before) = (window.pose(), assessment(&window));
     let n_matches = |window: &Window| {
         let rows = window.state.log.rows().iter();
-        rows.filter(|row| row.step == "match").count()
+        rows.filter(|row| row.step == LogStep::Match).count()
     };
     let n_before = n_matches(&window);
     set_tolerance(&mut window, 1e-6);

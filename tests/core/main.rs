@@ -11,6 +11,7 @@ mod app_mapping;
 mod app_mapping_look;
 mod assess;
 mod autosave;
+mod border_deviation;
 mod cancel;
 mod cli;
 mod deck_out;

@@ -308,6 +308,36 @@ fn the_report_holds_pictures_tables_and_the_comparison() {
 }
 
 #[test]
+fn plastic_strains_that_are_all_zero_are_unchanged() {
+    let bracket = Bracket::new();
+    let stamped = bracket.path("stamped.dynain");
+    let deck = std::fs::read_to_string(&stamped).unwrap();
+    let (before, states) = deck.split_once("*INITIAL_STRESS_SHELL").unwrap();
+    let (states, after) = states.split_once("*INITIAL_STRAIN_SHELL").unwrap();
+    // The plastic strain is the last of the eight fields of a layer.
+    let without = |line: &str| match line.len() {
+        80 => format!("{}{:>10}", &line[..70], 0),
+        _ => line.to_owned(),
+    };
+    let states: Vec<String> = states.lines().map(without).collect();
+    let states = states.join("\n");
+    let deck = format!("{before}*INITIAL_STRESS_SHELL{states}\n*INITIAL_STRAIN_SHELL{after}");
+    std::fs::write(&stamped, deck).unwrap();
+    let (json, page) = (bracket.path("map.json"), bracket.path("map.html"));
+    let output = bracket.map(&["--json", &json, "--report", &page]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let record: Value = serde_json::from_str(&std::fs::read_to_string(&json).unwrap()).unwrap();
+    assert_eq!(record["plastic_strain"]["stamped"]["max"], 0.0);
+    for name in ["Mean plastic strain", "Largest plastic strain"] {
+        let mut checks = record["checks"].as_array().unwrap().iter();
+        let check = checks.find(|check| check["name"] == name).unwrap();
+        assert_eq!(check["is_met"], true, "{check}");
+    }
+    let page = std::fs::read_to_string(&page).unwrap();
+    assert!(!words_of(&page).contains("NaN"));
+}
+
+#[test]
 fn a_peak_narrower_than_an_element_is_explained_wherever_checks_are_told() {
     let bracket = Bracket::new();
     let (json, page) = (bracket.path("map.json"), bracket.path("map.html"));

@@ -9,11 +9,12 @@ use shapematch::jobs::{Live, LiveIteration};
 use shapematch::monitor::Monitor;
 use shapematch::registration::{
     Extent, IterationRecord, MatchMonitor, MatchSettings, Observer, Side, Stage, StartKind,
-    StartOutcome, StartRecord, group_starts, match_meshes, same_pose,
+    StartOutcome, StartRecord, group_starts, same_pose,
 };
 use shapematch::role::Role;
 
 use super::app::Window;
+use super::registration::match_meshes;
 
 fn shifted(x: f64) -> Similarity {
     Similarity {

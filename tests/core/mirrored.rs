@@ -67,7 +67,10 @@ fn model() -> Model {
     };
     let points: Vec<StressPoint> = (0..8).map(point).collect();
     let history: Vec<f64> = (0..16).map(f64::from).collect();
-    model.forming.add_stress(1, 4, &points, &history).unwrap();
+    model
+        .forming
+        .add_state(1, 4, &points, &history, &[])
+        .unwrap();
     model.forming.others.solid_stress = 2;
     model
 }

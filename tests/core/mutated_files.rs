@@ -11,6 +11,8 @@ use shapematch::formats::{self, FormatError, Memory, ReadOptions, Selection, obj
 use shapematch::geometry::{Point3, TriMesh};
 use shapematch::monitor::Monitor;
 
+use super::mesh_files::ascii_stl;
+
 /// A file of some kilobytes that is not read after this time hangs.
 const PATIENCE: Duration = Duration::from_secs(60);
 /// Kilobytes of address space for one file, hundreds of times what any of them needs.
@@ -85,7 +87,7 @@ fn corpus() -> Vec<(String, Vec<u8>)> {
         property float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n\
         0 0 0\n1 0 0\n0 1 0\n4 0 1 2 -1\n";
     files.push(("main.stl".to_owned(), stl::write_binary(&mesh)));
-    files.push(("main.stl".to_owned(), stl::write_ascii(&mesh, "x")));
+    files.push(("main.stl".to_owned(), ascii_stl(&mesh, "x")));
     files.push(("main.obj".to_owned(), obj::write(&mesh, "x")));
     files.push(("main.ply".to_owned(), ply::write(&mesh, "x")));
     files.push(("main.ply".to_owned(), strips.as_bytes().to_vec()));

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use proptest::prelude::*;
 use shapematch::app::*;
-use shapematch::assess::{Reason, Verdict};
 use shapematch::geometry::Similarity;
 use shapematch::jobs::{Located, PipelineRunner, ProjectFile, ProjectRequest, Runner as _};
 use shapematch::monitor::Monitor;
@@ -430,27 +429,6 @@ fn later_programs_are_named_and_their_additions_kept() {
             .unwrap()
             .contains("spring_back")
     );
-}
-
-/// The reasons as the program stored them before they had names.
-#[test]
-fn reasons_stored_as_sentences_are_kept_as_they_are() {
-    let (_folder, [crash, stamped, path]) = folder();
-    let mut window = worked(&crash, &stamped);
-    save(&mut window, &path);
-    let text = std::fs::read_to_string(&path).unwrap();
-    let mut value: serde_json::Value = serde_json::from_str(&text).unwrap();
-    let old = "the shapes differ: 95 % lie within 0.412, the facets alone explain 0.120";
-    let assessment = &mut value["result"]["run"]["assessment"];
-    assessment["reasons"] = serde_json::json!([old]);
-    assessment["verdict"] = "check".into();
-    let (project, notes) = Project::parse(&value.to_string(), &path).unwrap();
-    assert!(notes.is_empty(), "{notes:?}");
-    let result = project.result.as_ref().unwrap();
-    let assessment = &result.run.assessment;
-    assert_eq!(assessment.reasons, [Reason::Sentence(old.to_owned())]);
-    assert_eq!(assessment.verdict, Verdict::Check);
-    assert!(project.to_text(&path).contains(old));
 }
 
 #[test]

@@ -143,7 +143,7 @@ fn projects_open_the_example_they_were_saved_with() {
     assert_eq!(again.part(Role::Crash).source, PartSource::RealisticExample);
     let line = again.state.document.command_line().unwrap();
     assert!(line.starts_with("shapematch sample shapematch-realistic-example --realistic && "));
-    // A project of an earlier version says nothing: it is the first example.
+    // A project that says nothing of it has the first example.
     let earlier = text.replace("\"is_realistic_example\": true,", "");
     let (project, _) = Project::parse(&earlier, path).unwrap();
     assert!(!project.parts.crash.unwrap().is_realistic_example);

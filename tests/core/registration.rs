@@ -12,6 +12,21 @@ use shapematch::settings::Choice;
 
 use super::drawn_pan::{everywhere, pan, panel, placement, worst_node};
 
+/// A match of bare meshes, which are prepared first.
+pub fn match_meshes<'a>(
+    source: &TriMesh,
+    target: &TriMesh,
+    settings: &MatchSettings,
+    monitor: impl Into<MatchMonitor<'a>>,
+) -> Result<MatchOutcome, RegistrationError> {
+    let input = MatchInput {
+        source: &Surface::new(source, "source")?,
+        target: &Surface::new(target, "target")?,
+        reduced: None,
+    };
+    match_surfaces(&input, settings, monitor)
+}
+
 fn run(source: &TriMesh, target: &TriMesh, settings: &MatchSettings) -> MatchOutcome {
     match_meshes(source, target, settings, &Monitor::silent()).unwrap()
 }
@@ -639,55 +654,4 @@ fn starts_of_both_hands_and_of_the_wide_search_are_numbered_once() {
     }
     let winner = &outcome.starts[outcome.winner];
     assert_eq!(winner.outcome, Some(StartOutcome::Won));
-}
-
-#[test]
-fn words_of_earlier_versions_are_still_read() {
-    let stage = |word: &str| serde_json::from_str::<Stage>(&format!("\"{word}\"")).unwrap();
-    assert_eq!(stage("race"), Stage::Coarse);
-    assert_eq!(stage("refine"), Stage::Refine);
-    assert_eq!(stage("finish"), Stage::Full);
-    assert_eq!(stage("catch"), Stage::WideBasin);
-    assert_eq!(stage("settle"), Stage::Converge);
-    assert_eq!(stage("match"), Stage::Converge);
-
-    let settings = MatchSettings {
-        refine_on_full: false,
-        n_coarse_points: 77,
-        starts: StartSettings {
-            wide_search: false,
-            ..StartSettings::default()
-        },
-        ..MatchSettings::default()
-    };
-    let former = serde_json::to_string(&settings)
-        .unwrap()
-        .replace("refine_on_full", "finish")
-        .replace("n_coarse_points", "n_race_points")
-        .replace("wide_search", "widen")
-        .replace("coarse-to-fine", "race");
-    assert!(former.contains("\"race\""), "{former}");
-    assert_eq!(
-        serde_json::from_str::<MatchSettings>(&former).unwrap(),
-        settings
-    );
-
-    let part = pan(30.0, 0.35, everywhere);
-    let mut settings = MatchSettings::default();
-    settings.starts.method = StartMethod::CurrentPose;
-    let outcome = run(&part, &part, &settings);
-    let former = serde_json::to_string(&outcome)
-        .unwrap()
-        .replace("\"outcome\":", "\"fate\":")
-        .replace("\"coarse\":{", "\"race\":{")
-        .replace("\"full\":{", "\"finish\":{")
-        .replace("\"stage\":\"coarse\"", "\"stage\":\"race\"")
-        .replace("\"stage\":\"full\"", "\"stage\":\"finish\"");
-    assert!(former.contains("\"fate\":\"won\"") && former.contains("\"race\":{"));
-    assert_eq!(
-        serde_json::from_str::<MatchOutcome>(&former).unwrap(),
-        outcome
-    );
-    let swapped = former.replace("\"kind\":\"current-pose\"", "\"kind\":\"swapped\"");
-    assert!(serde_json::from_str::<MatchOutcome>(&swapped).is_ok());
 }

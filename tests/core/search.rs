@@ -3,11 +3,10 @@
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use shapematch::geometry::{Point3, TriMesh, Vector3, sample_surface};
+use shapematch::geometry::{Point3, TriMesh, Vector3};
 use shapematch::monitor::Monitor;
 use shapematch::search::{
     BruteForce, Bvh, ClosestPoint, NormalFilter, PointTree, SearchLimits, closest_many,
-    surface_distance,
 };
 
 /// A number in −1 … 1 that depends on seed and index alone (splitmix64).
@@ -291,26 +290,6 @@ fn many_at_once_are_the_same_as_one_by_one() {
     }
     silent.request_cancel();
     assert!(closest_many(&tree, &points, &directions, &[], limits, &silent).is_err());
-}
-
-#[test]
-fn distance_of_two_parallel_plates() {
-    let p = |x: f64, y: f64, z: f64| Point3::new(x, y, z);
-    let plate = |z: f64| {
-        let corners = vec![p(0.0, 0.0, z), p(10.0, 0.0, z), p(0.0, 10.0, z)];
-        mesh(corners, vec![[0, 1, 2]])
-    };
-    let samples = sample_surface(&plate(2.5), 5000, 1);
-    let silent = Monitor::silent();
-    let stats = surface_distance(&samples, &Bvh::build(plate(0.0)), &silent)
-        .unwrap()
-        .unwrap();
-    for value in [stats.rms, stats.mean, stats.p95, stats.max] {
-        assert!((value - 2.5).abs() < 1e-12, "{stats:?}");
-    }
-    assert_eq!(stats.n, 5000);
-    let nothing = Bvh::build(TriMesh::default());
-    assert_eq!(surface_distance(&samples, &nothing, &silent), Ok(None));
 }
 
 proptest! {

@@ -5,10 +5,10 @@ use shapematch::geometry::{BorderEdges, Point3, Topology, TriMesh};
 use shapematch::monitor::Monitor;
 use shapematch::search::{Bvh, ClosestPoint};
 use shapematch::simplify::{
-    CollapseSequence, Simplified, SimplifyError, SimplifySettings, Speed, StopReason,
-    border_deviation, simplify,
+    CollapseSequence, Simplified, SimplifyError, SimplifySettings, Speed, StopReason, simplify,
 };
 
+use super::border_deviation::border_deviation;
 use super::pan::pan;
 use super::textbook_qem;
 

@@ -157,7 +157,7 @@ fn colours_of_the_preferences_hold_at_once_and_for_the_next_start() {
     let next = shapematch::app::AppState::new(read);
     assert_eq!(next.view.display.coloring.signed_map, ColorMap::Grey);
     assert_eq!(next.view.display.coloring.map, ColorMap::Cividis);
-    // A file of an earlier version, and one that someone edited.
+    // A file with keys missing, and one that someone edited.
     let old: Settings = serde_json::from_str("{}").unwrap();
     assert_eq!(old, Settings::default());
     let edited: Settings = serde_json::from_str("{\"decimals\": 200}").unwrap();

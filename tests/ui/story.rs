@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use shapematch::app::{ShownGeometry, StartupOptions};
+use shapematch::app::{LogStep, ShownGeometry, StartupOptions};
 use shapematch::report::parse_matrix;
 use shapematch::role::Role;
 use shapematch::ui::Shell;
@@ -106,9 +106,19 @@ fn load_reduce_move_over_align_match_detail_copy() {
         assert!(off < 0.01 * part.bounds().diagonal(), "off by {off}");
     }
     for step in [
-        "load", "reduce", "measure", "align", "match", "settle", "verify", "result",
+        LogStep::Load,
+        LogStep::Reduce,
+        LogStep::Measure,
+        LogStep::Align,
+        LogStep::Match,
+        LogStep::Settle,
+        LogStep::Verify,
+        LogStep::Result,
     ] {
-        assert!(state.log.latest(step).is_some(), "{step} is not in the log");
+        assert!(
+            state.log.latest(step).is_some(),
+            "{step:?} is not in the log"
+        );
     }
 }
 

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::{CopyForm, ExportCommand, PictureChoice, PicturePlace};
 use crate::app::work::Work;
-use crate::app::{Effect, NoticeLevel, Settings, Shared};
+use crate::app::{Effect, LogStep, NoticeLevel, Settings, Shared};
 use crate::jobs::{Destination, ExportRequest, Exported, JobKind};
 use crate::pipeline::outputs::{MeshOutput, Output, OutputInput};
 use crate::report::MatrixForm;
@@ -193,13 +193,12 @@ impl Work<'_> {
         took: Duration,
     ) -> Vec<Effect> {
         for note in &exported.notes {
-            self.log_step("export", None, note.clone(), None);
+            self.log_step(LogStep::Export, None, note.clone(), None);
         }
         match (exported.to, exported.text) {
             (Destination::Clipboard(what), Some(text)) => self.copy(text, &what),
             (Destination::Clipboard(_), None) => Vec::new(),
             (Destination::File(path), _) => {
-                let text = format!("written: {}", path.display());
                 // The message says at once what the log says in rows.
                 let notes = exported.notes.iter().map(String::as_str);
                 // A toast is cut at its end: there stands the folder, which may be long.
@@ -217,8 +216,7 @@ impl Work<'_> {
                     .chain(folder.as_deref());
                 let all: Vec<&str> = all.collect();
                 self.notify(NoticeLevel::Success, all.join("; "));
-                let level = NoticeLevel::Success;
-                self.log.push(level, "export", None, text, Some(took));
+                self.log.push_written(path, took);
                 Vec::new()
             }
         }

@@ -3,7 +3,7 @@
 use super::HistoryCommand;
 use crate::app::follow_up::{FollowUp, Places};
 use crate::app::work::Work;
-use crate::app::{Document, StampedPose};
+use crate::app::{Document, LogStep, StampedPose};
 use crate::role::Role;
 
 impl Work<'_> {
@@ -23,14 +23,14 @@ impl Work<'_> {
             if let Some(at) = done_at {
                 self.log.notices.withdraw_from(at);
             }
-            self.log_step("undo", None, name, None);
+            self.log_step(LogStep::Undo, None, name, None);
         }
     }
 
     fn redo(&mut self) {
         if let Some((name, document)) = self.history.redo(self.document.clone()) {
             self.jump(document);
-            self.log_step("redo", None, name, None);
+            self.log_step(LogStep::Redo, None, name, None);
         }
     }
 

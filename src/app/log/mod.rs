@@ -3,12 +3,15 @@
 mod command;
 mod notice;
 mod rows;
+mod step;
 
+use std::path::PathBuf;
 use std::time::Duration;
 
 pub use command::NoticeCommand;
 pub use notice::{Notice, NoticeId, NoticeLevel, Notices, Showing};
 pub use rows::{Clock, Log, LogRow, age_text, clock_text, duration_text};
+pub use step::LogStep;
 
 use crate::role::Role;
 
@@ -31,7 +34,7 @@ impl LogState {
     }
 
     /// The last row of a step.
-    pub fn latest(&self, step: &str) -> Option<&LogRow> {
+    pub fn latest(&self, step: LogStep) -> Option<&LogRow> {
         self.log.latest(step)
     }
 
@@ -55,7 +58,7 @@ impl LogState {
     pub(super) fn push(
         &mut self,
         level: NoticeLevel,
-        step: &'static str,
+        step: LogStep,
         role: Option<Role>,
         text: String,
         took: Option<Duration>,
@@ -65,8 +68,23 @@ impl LogState {
             step,
             role,
             text,
+            file: None,
             took,
             level,
+            count: 1,
+        });
+    }
+
+    /// Adds the row of a file that was written.
+    pub(super) fn push_written(&mut self, path: PathBuf, took: Duration) {
+        self.log.push(LogRow {
+            at: self.clock.day_time_at(self.now),
+            step: LogStep::Export,
+            role: None,
+            text: format!("written: {}", path.display()),
+            file: Some(path),
+            took: Some(took),
+            level: NoticeLevel::Success,
             count: 1,
         });
     }

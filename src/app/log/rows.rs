@@ -1,8 +1,9 @@
 //! The lines of the log with their durations.
 
-use std::path::Path;
+use std::path::PathBuf;
 use std::time::Duration;
 
+use super::LogStep;
 use crate::app::NoticeLevel;
 use crate::role::Role;
 
@@ -11,12 +12,14 @@ use crate::role::Role;
 pub struct LogRow {
     /// Local time of day; past midnight it goes on counting.
     pub at: Duration,
-    /// What was done, in one word: load, reduce, align, match …
-    pub step: &'static str,
+    /// What was done.
+    pub step: LogStep,
     /// The part it was done to, if it is about one.
     pub role: Option<Role>,
     /// What came out.
     pub text: String,
+    /// The file that was written, of an export.
+    pub file: Option<PathBuf>,
     /// How long it took.
     pub took: Option<Duration>,
     /// How loud it is.
@@ -36,13 +39,10 @@ impl LogRow {
 
     /// What was done; of several exports also which file was written.
     pub fn title(&self) -> String {
-        let path = self.text.strip_prefix("written: ").map(Path::new);
-        let name = path
-            .filter(|_| self.step == "export")
-            .and_then(Path::file_name);
-        match name {
-            Some(name) => format!("{} {}", self.step, name.display()),
-            None => self.step.to_owned(),
+        let step = self.step.label();
+        match self.file.as_ref().and_then(|path| path.file_name()) {
+            Some(name) => format!("{step} {}", name.display()),
+            None => step.to_owned(),
         }
     }
 
@@ -82,7 +82,7 @@ impl Log {
     }
 
     /// The latest row about a step.
-    pub fn latest(&self, step: &str) -> Option<&LogRow> {
+    pub fn latest(&self, step: LogStep) -> Option<&LogRow> {
         self.rows.iter().rev().find(|row| row.step == step)
     }
 
@@ -92,7 +92,7 @@ impl Log {
             let role = row.role.map_or("", Role::word);
             let took = row.took.map_or_else(String::new, duration_text);
             let (at, text) = (clock_text(row.at), row.counted_text());
-            format!("{at}\t{}\t{role}\t{text}\t{took}\n", row.step)
+            format!("{at}\t{}\t{role}\t{text}\t{took}\n", row.step.label())
         };
         self.rows.iter().map(line).collect()
     }
@@ -159,9 +159,10 @@ mod tests {
     fn row(level: NoticeLevel, text: &str) -> LogRow {
         LogRow {
             at: Duration::ZERO,
-            step: "load",
+            step: LogStep::Load,
             role: None,
             text: text.to_owned(),
+            file: None,
             took: None,
             level,
             count: 1,
@@ -172,7 +173,8 @@ mod tests {
     fn an_export_is_called_by_its_file() {
         let mut written = row(NoticeLevel::Success, "written: parts/report.html");
         assert_eq!(written.title(), "load");
-        written.step = "export";
+        written.step = LogStep::Export;
+        written.file = Some("parts/report.html".into());
         assert_eq!(written.title(), "export report.html");
     }
 

@@ -9,7 +9,7 @@ use super::{FurtherPose, MapResult};
 use crate::app::follow_up::FollowUp;
 use crate::app::parts::length_factor_of;
 use crate::app::work::Work;
-use crate::app::{Document, Effect, NoticeLevel, Part, Reason, Shared, UnitHint, facts};
+use crate::app::{Document, Effect, LogStep, NoticeLevel, Part, Reason, Shared, UnitHint, facts};
 use crate::assess::Verdict;
 use crate::geometry::Similarity;
 use crate::jobs::{FurtherInput, JobKey, JobKind, PlaceInput, Stamp};
@@ -304,10 +304,10 @@ impl MappingState {
         }
         match warning {
             Some(warning) => {
-                work.log.push(level, "match", None, line, Some(took));
-                work.log_at(NoticeLevel::Warning, "match", None, warning, None);
+                work.log.push(level, LogStep::Match, None, line, Some(took));
+                work.log_at(NoticeLevel::Warning, LogStep::Match, None, warning, None);
             }
-            None => work.log_at(level, "match", None, line, Some(took)),
+            None => work.log_at(level, LogStep::Match, None, line, Some(took)),
         }
     }
 
@@ -327,7 +327,13 @@ impl MappingState {
             || self.reading.values().any(|known| *known == file);
         if is_known {
             let text = format!("{} is among the stamped files already", file_name(&file));
-            work.log_at(NoticeLevel::Note, "load", Some(Role::Stamped), text, None);
+            work.log_at(
+                NoticeLevel::Note,
+                LogStep::Load,
+                Some(Role::Stamped),
+                text,
+                None,
+            );
             return Vec::new();
         }
         self.unread.retain(|_, (known, _)| *known != file);
@@ -399,12 +405,12 @@ impl MappingState {
             "{name}: {}, one more stamped file",
             counted(part.report.n_triangles, "triangle")
         );
-        work.log_step("load", role, line, Some(took));
+        work.log_step(LogStep::Load, role, line, Some(took));
         if let Some((level, line)) = facts::diagnostics_line(&part) {
-            work.log_at(level, "load", role, line, None);
+            work.log_at(level, LogStep::Load, role, line, None);
         }
         if let Some(line) = part.tools_line() {
-            work.log_at(NoticeLevel::Note, "load", role, line, None);
+            work.log_at(NoticeLevel::Note, LogStep::Load, role, line, None);
         }
         let step = match replaces {
             None => format!("Add {name}"),
@@ -507,7 +513,7 @@ pub(super) fn set_units(work: &mut Work<'_>, revision: u64, units: Option<Units>
     change(work, step.clone(), revision, |further| {
         further.loaded = Arc::new(loaded.with_units(units)).into();
     });
-    work.log_step("units", Some(Role::Stamped), step, None);
+    work.log_step(LogStep::Units, Some(Role::Stamped), step, None);
     let Some(hash) = loaded.hash() else {
         return Vec::new();
     };
@@ -557,7 +563,7 @@ pub(in crate::app) fn tell_dropped(work: &mut Work<'_>, n: usize) {
         if n == 1 { "is" } else { "are" },
         if n == 1 { "it" } else { "them" },
     );
-    work.log_at(NoticeLevel::Note, "map", None, text, None);
+    work.log_at(NoticeLevel::Note, LogStep::Map, None, text, None);
 }
 
 pub(super) fn file_name(path: &Path) -> String {

@@ -1,17 +1,21 @@
 //! Carrying the forming results onto the crash part: what was chosen, what came out, and how it is
 //! looked at.
 
+mod command;
 mod further;
 mod picture;
 mod probe;
+mod quantity;
 mod results;
 mod shown_files;
 mod stamped_rows;
 
+pub use command::MapCommand;
 pub(super) use further::{FURTHER_WITHOUT_POSE, NewFurther, tell_dropped};
 pub use further::{Further, MappingState, Placing};
 pub use picture::{MapDisplay, MapPicture};
 pub use probe::ProbeReport;
+pub use quantity::Quantity;
 pub(super) use results::{take_compared, take_mapped};
 pub use shown_files::{FileShare, ShownFile};
 pub use stamped_rows::{StampedRow, StampedState};
@@ -24,13 +28,11 @@ use super::work::Work;
 use super::{AppState, ColorBy, Document, Effect, Reason, Shared};
 use crate::geometry::Similarity;
 use crate::jobs::{CompareMappingInput, JobKey, JobKind, MapInput, Stamp};
-use crate::mapping::{MapOptions, Quantities};
 use crate::pipeline::forming_values::{FormingValue, has_forming_value, nominal_thickness};
 use crate::pipeline::load::LoadedPart;
 pub use crate::pipeline::map::{DoubtfulElement, FurtherPose, UnmappedElement};
 use crate::pipeline::map::{ElementLists, MapRecipe, MapRecord, MapRun, OtherResult, PoseOrigin};
 use crate::role::Role;
-use crate::units::Units;
 
 /// What undo covers of the mapping.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -71,43 +73,6 @@ const UNMOVED: f64 = 1e-9;
 
 /// Why there is no picture of the files.
 pub(super) const FROM_ONE_FILE: &str = "nothing is mapped from several stamped files";
-
-/// Commands of section 4.
-#[derive(Debug, Clone)]
-pub enum MapCommand {
-    /// Other quantities.
-    SetRecipe(Box<MapRecipe>),
-    /// Another method or limit; several in a row are one step, as a drag sends them.
-    SetOptions(Box<MapOptions>),
-    /// Ask for a further stamped file.
-    AskFurther,
-    /// Read a further stamped file and match it with the crash part.
-    AddFurther(PathBuf),
-    /// Take a further stamped file out of the list, or give its reading up.
-    RemoveFurther(u64),
-    /// Where the pose of a further stamped file comes from.
-    SetFurtherPose(u64, FurtherPose),
-    /// The units of a further stamped file, or that its lengths are those of the first one.
-    SetFurtherUnits(u64, Option<Units>),
-    /// Match a further stamped file anew.
-    MatchFurther(u64),
-    /// End the running match of a further stamped file with the best pose so far.
-    StopFurther,
-    /// Map, or give the running mapping up.
-    MapOrCancel,
-    /// Map where the stamped file has its part, without a match.
-    MapAsLoaded,
-    /// Look at an element of the current mapping closely, or no longer.
-    Probe(Option<usize>),
-    /// Pin an element of the crash part for the report, or take its pin away.
-    TogglePin(u64),
-    /// Ask for another mapper's result, or give the running comparison up.
-    AskOther,
-    /// Compare the current mapping with another mapper's result.
-    CompareWith(PathBuf),
-    /// Compare no longer.
-    EndComparison,
-}
 
 impl Document {
     /// The mapping, if parts and pose are still those it was made at.
@@ -208,91 +173,6 @@ impl Document {
         } else {
             "None of the stamped files holds forming results."
         }))
-    }
-
-    /// Why no stamped part has a quantity; `None` if one has it.
-    pub fn lacks_quantity(&self, quantity: Quantity) -> Option<&'static str> {
-        self.part(Role::Stamped)?;
-        let has = |part: &Shared<LoadedPart>| {
-            let forming = &part.model.forming;
-            match quantity {
-                Quantity::Thickness => part.mean_thickness().is_some(),
-                Quantity::PlasticStrain | Quantity::Stress => forming.n_stress() > 0,
-                Quantity::Strain => forming.n_strain() > 0,
-                Quantity::History => {
-                    let mut stresses = forming.stresses();
-                    stresses.any(|stress| stress.n_history + stress.n_tensors > 0)
-                }
-            }
-        };
-        let [of_one, of_several] = match quantity {
-            Quantity::Thickness => [
-                "neither elements nor sections of the stamped file have a thickness",
-                "neither elements nor sections of a stamped file have a thickness",
-            ],
-            Quantity::PlasticStrain | Quantity::Stress => [
-                "the stamped file has no *INITIAL_STRESS_SHELL",
-                "no stamped file has *INITIAL_STRESS_SHELL",
-            ],
-            Quantity::Strain => [
-                "the stamped file has no *INITIAL_STRAIN_SHELL",
-                "no stamped file has *INITIAL_STRAIN_SHELL",
-            ],
-            Quantity::History => [
-                "the stamped file has no history variables",
-                "no stamped file has history variables",
-            ],
-        };
-        let is_one = self.mapping.further.is_empty();
-        (!self.all_stamped().any(has)).then_some(if is_one { of_one } else { of_several })
-    }
-}
-
-/// A quantity as it is chosen in the window.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantity {
-    /// Shell thickness.
-    Thickness,
-    /// Effective plastic strain.
-    PlasticStrain,
-    /// Strain tensors.
-    Strain,
-    /// Stress tensors.
-    Stress,
-    /// History variables.
-    History,
-}
-
-impl Quantity {
-    /// All, in the order of the form.
-    pub const ALL: [Self; 5] = [
-        Self::Thickness,
-        Self::PlasticStrain,
-        Self::Strain,
-        Self::Stress,
-        Self::History,
-    ];
-
-    /// Name of the quantity in section 4.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Thickness => "Thickness",
-            Self::PlasticStrain => "Plastic strain",
-            Self::Strain => "Strain",
-            Self::Stress => "Stress",
-            Self::History => "History",
-        }
-    }
-
-    /// The switch of it.
-    pub fn switch(self, of: &mut Quantities) -> &mut bool {
-        match self {
-            Self::Thickness => &mut of.thickness,
-            Self::PlasticStrain => &mut of.plastic_strain,
-            Self::Strain => &mut of.strain,
-            Self::Stress => &mut of.stress,
-            Self::History => &mut of.history,
-        }
     }
 }
 

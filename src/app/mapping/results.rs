@@ -7,7 +7,7 @@ use super::further::MappingState;
 use super::{MapResult, compare_with, file_names, start};
 use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
-use crate::app::{AppState, Document, Effect, NoticeLevel, Shared};
+use crate::app::{AppState, Document, Effect, LogStep, NoticeLevel, Shared};
 use crate::pipeline::load::{LoadedPart, same_parts_line};
 use crate::pipeline::map::{
     ComparisonRecord, ElementLists, MapRecord, MapRun, OtherResult, unread_line,
@@ -64,9 +64,15 @@ pub(in crate::app) fn take_mapped(
     let unread = parts.filter_map(|part| unread_line(part));
     let told: Vec<String> = unread.chain(same).collect();
     for warning in record.warnings.iter().filter(|one| !told.contains(one)) {
-        work.log_at(NoticeLevel::Warning, "map", None, capital(warning), None);
+        work.log_at(
+            NoticeLevel::Warning,
+            LogStep::Map,
+            None,
+            capital(warning),
+            None,
+        );
     }
-    work.log_step("map", None, text, Some(took));
+    work.log_step(LogStep::Map, None, text, Some(took));
     let stamp = work.document.stamp();
     let put = |document: &mut Document| {
         let mapping = &mut document.mapping;
@@ -114,7 +120,7 @@ pub(in crate::app) fn take_compared(
         counted(comparison.n_only_here, "element"),
         counted(comparison.n_only_other, "element"),
     );
-    work.log_step("map", None, text, Some(took));
+    work.log_step(LogStep::Map, None, text, Some(took));
     let file = other.files.first().cloned();
     let put = |document: &mut Document| {
         document.mapping.compare_with = file;

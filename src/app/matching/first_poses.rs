@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::result::show_alternative;
 use super::{MatchState, Starts};
+use crate::app::LogStep;
 use crate::app::facts;
 use crate::app::work::Work;
 use crate::registration::starts::Start;
@@ -87,7 +88,7 @@ impl MatchState {
     ) {
         let n_poses = poses.len();
         let text = facts::counted(n_poses, "start pose");
-        work.log_step("align", None, text, Some(took));
+        work.log_step(LogStep::Align, None, text, Some(took));
         self.starts = Some(Starts {
             parts: work.document.stamp().parts,
             poses: poses.into(),

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::MatchState;
 use crate::app::work::Work;
-use crate::app::{Effect, facts};
+use crate::app::{Effect, LogStep, facts};
 use crate::jobs::{JobKey, JobKind, VerdictInput};
 use crate::pipeline::match_parts::MatchRun;
 
@@ -60,7 +60,7 @@ impl MatchState {
         // A drag gives many verdicts; those that say the same need no row.
         if run.assessment.verdict != before {
             let line = facts::match_line(run, work.lengths());
-            work.log_step("judge", None, line, Some(took));
+            work.log_step(LogStep::Judge, None, line, Some(took));
         }
     }
 }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::MatchState;
 use crate::app::work::Work;
-use crate::app::{AppState, Effect, MatchResult, Reason, facts};
+use crate::app::{AppState, Effect, LogStep, MatchResult, Reason, facts};
 use crate::assess::{AlternativeStatements, Assessment, Coverage};
 use crate::jobs::{JobKey, JobKind, MeasureInput, Measurement, Stamp};
 use crate::registration::MatchSettings;
@@ -93,7 +93,7 @@ impl MatchState {
         took: Duration,
     ) {
         let line = facts::measure_line(&measurement.coverage, work.lengths());
-        work.log_step("measure", None, line, Some(took));
+        work.log_step(LogStep::Measure, None, line, Some(took));
         self.measurement = Some((stamp, measurement.into()));
     }
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::MatchState;
 use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
-use crate::app::{Effect, MatchResult, facts};
+use crate::app::{Effect, LogStep, MatchResult, facts};
 use crate::geometry::Similarity;
 use crate::jobs::Stamp;
 use crate::pipeline::match_parts::MatchRun;
@@ -39,7 +39,8 @@ impl MatchState {
             stamp,
         });
         // Its phases have their own rows; counting the whole again would double the total.
-        work.log.push(level, "result", None, line.clone(), None);
+        work.log
+            .push(level, LogStep::Result, None, line.clone(), None);
         work.follow(FollowUp::Matched {
             before,
             level,
@@ -69,7 +70,7 @@ pub(super) fn show_alternative(work: &mut Work<'_>, alternative: Option<usize>) 
         None => "Best pose".to_owned(),
         Some(index) => format!("Alternative {}", index + 2),
     };
-    work.log_step("match", Some(Role::Stamped), name.clone(), None);
+    work.log_step(LogStep::Match, Some(Role::Stamped), name.clone(), None);
     take_pose_as_result(work, name, crash_from_stamped, |stamp| MatchResult {
         alternative,
         stamp,

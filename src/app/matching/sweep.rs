@@ -7,7 +7,7 @@ use super::MatchState;
 use super::run::start_with_input;
 use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
-use crate::app::{AppState, Effect, NoticeLevel};
+use crate::app::{AppState, Effect, LogStep, NoticeLevel};
 use crate::jobs::{JobKey, JobKind, SweepInput, SweepRows};
 use crate::pipeline::sweep::{Sweep, SweepSettings};
 use crate::role::Role;
@@ -80,7 +80,7 @@ impl MatchState {
         work.follow(FollowUp::SweepEnded);
         work.log_at(
             NoticeLevel::Success,
-            "sweep",
+            LogStep::Sweep,
             None,
             "sweep finished",
             Some(took),

@@ -17,6 +17,7 @@ pub use overlap::PoseOverlap;
 
 use super::work::Work;
 use super::{AppState, GestureId, NoticeLevel, Reason, StampedPose};
+use crate::app::LogStep;
 use crate::geometry::{Point3, Similarity};
 use crate::jobs::Stamp;
 use crate::report::parse_matrix;
@@ -230,7 +231,7 @@ fn set_pose(work: &mut Work<'_>, name: String, crash_from_stamped: Similarity) {
 }
 
 fn log_move(work: &mut Work<'_>, name: String) {
-    work.log_step("move", Some(Role::Stamped), name, None);
+    work.log_step(LogStep::Move, Some(Role::Stamped), name, None);
 }
 
 /// Applies a motion of the crash model's space to the stamped part.
@@ -269,14 +270,14 @@ fn paste(work: &mut Work<'_>, text: &str) {
         Ok(parsed) => {
             work.commit_pose("Pasted pose", None, parsed.motion);
             let understood = format!("pasted: {}", parsed.layout.label());
-            work.log_at(NoticeLevel::Success, "move", None, understood, None);
+            work.log_at(NoticeLevel::Success, LogStep::Move, None, understood, None);
             for note in parsed.notes {
-                work.log_at(NoticeLevel::Note, "move", None, note, None);
+                work.log_at(NoticeLevel::Note, LogStep::Move, None, note, None);
             }
         }
         Err(error) => {
             let text = format!("nothing pasted: {error}");
-            work.log_at(NoticeLevel::Error, "move", None, text, None);
+            work.log_at(NoticeLevel::Error, LogStep::Move, None, text, None);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What picking, changing and fitting of point pairs change.
 
 use super::{PairCommand, PairTool, PairsState, PickedPoint, PointPair};
+use crate::app::LogStep;
 use crate::app::work::Work;
 use crate::role::Role;
 
@@ -94,6 +95,6 @@ fn fit_pairs(work: &mut Work<'_>) {
             None,
             found.fit.target_from_source,
         );
-        work.log_step("pairs", None, text, None);
+        work.log_step(LogStep::Pairs, None, text, None);
     }
 }

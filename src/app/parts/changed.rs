@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::PartsState;
 use crate::app::work::Work;
-use crate::app::{Action, AppState, Document, NoticeLevel};
+use crate::app::{Action, AppState, Document, LogStep, NoticeLevel};
 use crate::pipeline::load::LoadedPart;
 use crate::role::Role;
 use crate::text::counted;
@@ -48,7 +48,7 @@ impl PartsState {
                 "have"
             };
             let text = format!("{what} {verb} changed on disk; this work keeps what was read");
-            work.log_step("load", Some(role), text.clone(), None);
+            work.log_step(LogStep::Load, Some(role), text.clone(), None);
             let showing = work.showing(NoticeLevel::Warning);
             let notices = &mut work.log.notices;
             notices.offer(NoticeLevel::Warning, text, showing, Action::ReloadChanged);

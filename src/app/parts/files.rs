@@ -8,9 +8,9 @@ use super::{FileCommand, Guess, PartsState};
 use crate::app::follow_up::FollowUp;
 use crate::app::mapping::tell_dropped;
 use crate::app::work::Work;
-use crate::app::{Action, Effect, NoticeLevel, Part, Settings, StampedPose, facts};
+use crate::app::{Action, Effect, LogStep, NoticeLevel, Part, Settings, StampedPose, facts};
 use crate::formats::ReadOptions;
-use crate::jobs::{JobKey, JobKind, PartFacts, PartSource, ProjectRequest};
+use crate::jobs::{FormingEvidence, JobKey, JobKind, PartFacts, PartSource, ProjectRequest};
 use crate::pipeline::load::{LoadSettings, LoadedPart, same_parts_line, usual_selection};
 use crate::pipeline::project::is_project;
 use crate::role::{PerRole, Role};
@@ -103,7 +103,7 @@ impl PartsState {
         let n_paths = paths.len();
         if n_paths > 2 {
             let text = format!("{n_paths} files were dropped; the first two are opened");
-            work.log_at(NoticeLevel::Note, "load", None, text, None);
+            work.log_at(NoticeLevel::Note, LogStep::Load, None, text, None);
         }
         let first = role.unwrap_or_else(|| self.role_to_fill(work));
         let roles = [first, first.other()];
@@ -222,7 +222,12 @@ impl PartsState {
         if has_swapped {
             self.selected.clear();
             work.follow(FollowUp::PartsSwapped);
-            work.log_step("load", None, "crash and stamped part exchanged", None);
+            work.log_step(
+                LogStep::Load,
+                None,
+                "crash and stamped part exchanged",
+                None,
+            );
             remember_roles(work);
             tell_dropped(work, n_dropped);
         }
@@ -319,13 +324,13 @@ impl PartsState {
             role
         };
         work.log_step(
-            "load",
+            LogStep::Load,
             Some(role),
             facts::load_line(&part, &facts),
             Some(took),
         );
         if let Some((level, line)) = facts::diagnostics_line(&part) {
-            work.log_at(level, "load", Some(role), line, None);
+            work.log_at(level, LogStep::Load, Some(role), line, None);
         }
         let now = work.unix_now();
         work.settings.remember(&source, now);
@@ -360,7 +365,7 @@ impl PartsState {
         let is_single = self.guess.n_pending == 1;
         let is_free = work.document.part(role.other()).is_none();
         let may_replace = is_free || work.document.part(role).is_some();
-        is_single && may_replace && role == Role::Crash && facts.formed > 0
+        is_single && may_replace && role == Role::Crash && facts.formed > FormingEvidence::None
     }
 
     fn place(
@@ -405,7 +410,7 @@ impl PartsState {
         if had_result && work.document.result.is_none() {
             let text =
                 format!("{file} ended the result of the match before it; undo brings it back");
-            work.log_step("load", Some(role), text.clone(), None);
+            work.log_step(LogStep::Load, Some(role), text.clone(), None);
             let showing = work.showing(NoticeLevel::Note);
             let notices = &mut work.log.notices;
             notices.offer(NoticeLevel::Note, text, showing, Action::Undo);
@@ -433,15 +438,17 @@ impl PartsState {
         };
         let why = match stamped.facts.formed {
             _ if is_by_name => "its name says so",
-            0 => "no file says which it is",
-            1 => "it is one part with a thickness for each element",
-            _ => "it carries forming results",
+            FormingEvidence::None => "no file says which it is",
+            FormingEvidence::ThicknessPerElement => {
+                "it is one part with a thickness for each element"
+            }
+            FormingEvidence::Results => "it carries forming results",
         };
         let text = format!(
             "{} is taken for the stamped part: {why}",
             stamped.loaded.file_name()
         );
-        work.log_step("load", None, text.clone(), None);
+        work.log_step(LogStep::Load, None, text.clone(), None);
         let showing = work.showing(NoticeLevel::Note);
         work.log
             .notices
@@ -470,17 +477,14 @@ impl PartsState {
                 old.level = None;
             }
         });
-        work.log_step("select", Some(role), line, Some(took));
+        work.log_step(LogStep::Select, Some(role), line, Some(took));
         if let Some(line) = tools {
-            work.log_at(NoticeLevel::Note, "select", Some(role), line, None);
+            work.log_at(NoticeLevel::Note, LogStep::Select, Some(role), line, None);
         }
         self.refresh_likeness(work.document);
         work.follow(FollowUp::PartReselected(role));
     }
 }
-
-/// [`PartFacts::formed`] of a file with stresses or strains.
-const RESULTS: u8 = 2;
 
 /// How a file is read that was not read before.
 fn usual_load_settings(settings: &Settings) -> LoadSettings {
@@ -495,7 +499,7 @@ fn warn_of_same_parts(work: &mut Work<'_>) {
     let both = work.document.both();
     let line = both.and_then(|both| same_parts_line(both.map(|part| &*part.loaded)));
     if let Some(line) = line {
-        work.log_at(NoticeLevel::Warning, "load", None, line, None);
+        work.log_at(NoticeLevel::Warning, LogStep::Load, None, line, None);
     }
 }
 
@@ -505,7 +509,8 @@ fn offer_swap(work: &mut Work<'_>) {
         return;
     };
     let PerRole { crash, stamped } = both;
-    let is_by_content = crash.facts.formed == RESULTS && stamped.facts.formed == 0;
+    let is_by_content = crash.facts.formed == FormingEvidence::Results
+        && stamped.facts.formed == FormingEvidence::None;
     let is_by_name = crash.facts.formed >= stamped.facts.formed
         && stamped_word(crash) > 0
         && stamped_word(stamped) < 0;
@@ -523,7 +528,7 @@ fn offer_swap(work: &mut Work<'_>) {
     } else {
         return;
     };
-    work.log_step("load", None, text.clone(), None);
+    work.log_step(LogStep::Load, None, text.clone(), None);
     let showing = work.showing(NoticeLevel::Warning);
     let notices = &mut work.log.notices;
     notices.offer(NoticeLevel::Warning, text, showing, Action::Swap);

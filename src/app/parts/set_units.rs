@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::PartsState;
 use crate::app::Effect;
+use crate::app::LogStep;
 use crate::app::work::Work;
 use crate::pipeline::load::LoadedPart;
 use crate::role::{PerRole, Role};
@@ -39,7 +40,7 @@ impl PartsState {
                     part.loaded = labelled.into();
                 }
             });
-            work.log_step("units", Some(role), line, None);
+            work.log_step(LogStep::Units, Some(role), line, None);
         }
         let mut effects = Vec::new();
         if let Some(hash) = hash {

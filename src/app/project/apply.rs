@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::{ProjectCommand, ProjectState};
 use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
-use crate::app::{Dialog, Document, Effect, NoticeLevel};
+use crate::app::{Dialog, Document, Effect, LogStep, NoticeLevel};
 use crate::jobs::{JobKind, Located, ProjectFile, ProjectRequest};
 use crate::pipeline::project::{EXTENSION, is_project};
 use crate::role::Role;
@@ -88,7 +88,7 @@ impl ProjectState {
 
     fn written(&mut self, work: &mut Work<'_>, path: PathBuf, document: Document) -> Vec<Effect> {
         let text = format!("project saved: {}", path.display());
-        work.log_at(NoticeLevel::Success, "project", None, text, None);
+        work.log_at(NoticeLevel::Success, LogStep::Project, None, text, None);
         let project = document.project;
         self.saved = Some(document);
         let now = work.unix_now();

@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use super::window::WindowEntry;
 use crate::app::{
-    AppState, Dialog, Document, Effect, Further, Mapping, MatchResult, NoticeLevel, Part, Placing,
-    PointPairs, ShownGeometry, StampedPose,
+    AppState, Dialog, Document, Effect, Further, LogStep, Mapping, MatchResult, NoticeLevel, Part,
+    Placing, PointPairs, ShownGeometry, StampedPose,
 };
 use crate::jobs::{
     JobKind, Located, MeasureLevelInput, OpenedPart, OpenedProject, ProjectFile, ProjectRequest,
@@ -47,7 +47,7 @@ impl AppState {
         for note in notes {
             let text = format!("{name}: {note}");
             self.work()
-                .log_at(NoticeLevel::Note, "project", None, text, None);
+                .log_at(NoticeLevel::Note, LogStep::Project, None, text, None);
         }
         self.tell_changed_files(&request, &parts, &further);
         self.previews.drop_all();
@@ -59,7 +59,8 @@ impl AppState {
         let is_as_mapped = project.is_mapped && is_all_same(&project, parts);
         let filed = self.file_project(request, &project);
         let text = format!("opened {name}: {}", self.work_title());
-        self.work().log_step("project", None, text, Some(took));
+        self.work()
+            .log_step(LogStep::Project, None, text, Some(took));
         let mut all = vec![Effect::SaveSettings];
         all.extend(filed);
         all.extend(effects);
@@ -97,7 +98,7 @@ impl AppState {
             let text = format!("{name} {how}; {what}, results are out of date");
             let role = Some(file.role());
             self.work()
-                .log_at(NoticeLevel::Warning, "project", role, text, None);
+                .log_at(NoticeLevel::Warning, LogStep::Project, role, text, None);
         }
     }
 
@@ -231,7 +232,7 @@ impl AppState {
             Err(error) => {
                 let text = format!("how the window looked is not understood: {error}");
                 self.work()
-                    .log_at(NoticeLevel::Note, "project", None, text, None);
+                    .log_at(NoticeLevel::Note, LogStep::Project, None, text, None);
                 None
             }
         }

@@ -13,6 +13,7 @@ use self::level_result::LevelResults;
 use super::follow_up::FollowUp;
 use super::work::Work;
 use super::{AppState, Document, Effect, Part, Reason, Settings, ShownGeometry, facts};
+use crate::app::LogStep;
 use crate::jobs::{JobKind, MeasureLevelInput, MeasuredLevel, Recording, ReduceInput};
 use crate::role::{PerRole, Role};
 
@@ -186,7 +187,12 @@ impl ReduceState {
         // Made again after another selection or unit, it belongs to that step.
         let is_again = part.level.is_none() && part.wanted_level == Some(level.max_triangles);
         *self.recordings.get_mut(role) = Some((revision, Arc::clone(&recording)));
-        work.log_step("reduce", Some(role), facts::reduce_line(&level), Some(took));
+        work.log_step(
+            LogStep::Reduce,
+            Some(role),
+            facts::reduce_line(&level),
+            Some(took),
+        );
         let n_triangles = facts::grouped(level.level.mesh.n_triangles());
         let name = format!("Reduce the {} part to {n_triangles}", role.word());
         let measured = Arc::clone(&level);
@@ -218,5 +224,5 @@ pub(super) fn take_level_measured(
     took: Duration,
 ) {
     let line = facts::deviation_line(level, work.lengths());
-    work.log_step("measure", Some(role), line, Some(took));
+    work.log_step(LogStep::Measure, Some(role), line, Some(took));
 }

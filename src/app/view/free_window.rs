@@ -22,7 +22,6 @@ pub enum FreeWindow {
     /// Both parts as they were read, without reduction.
     FullMesh,
     /// The stamped part at the best pose beside the shown one.
-    #[serde(alias = "second-pose")]
     Alternative,
 }
 

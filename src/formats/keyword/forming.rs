@@ -160,9 +160,10 @@ pub(crate) fn result_cards(
             continue;
         }
         let mut values = Forming::default();
-        let read = match is_stress {
-            true => reader.stress(&card, 0, &mut values),
-            false => reader.strain(&card, 0, &mut values),
+        let read = if is_stress {
+            reader.stress(&card, 0, &mut values)
+        } else {
+            reader.strain(&card, 0, &mut values)
         };
         let offset = if is_of_set { units.set } else { units.element };
         match (read, card.required_id(EIGHT_BY_10, 0)) {
@@ -320,9 +321,10 @@ impl<'a, 'd> Reader<'a, 'd> {
         let lines = if large == 0 { SMALL } else { LARGE };
         // Without counts there is one point at the inner and one at the outer surface, which need no T.
         let is_of_surfaces = n_plane * n_thick == 0;
-        let (n_plane, n_thick) = match is_of_surfaces {
-            true => (1, 2),
-            false => (n_plane, n_thick),
+        let (n_plane, n_thick) = if is_of_surfaces {
+            (1, 2)
+        } else {
+            (n_plane, n_thick)
         };
         let mut points = Vec::new();
         for _ in 0..n_plane * n_thick {

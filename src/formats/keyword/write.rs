@@ -434,7 +434,7 @@ mod tests {
         };
         model
             .forming
-            .add_stress(2, 1, &[point], &[7.0, 8.0])
+            .add_state(2, 1, &[point], &[7.0, 8.0], &[])
             .unwrap();
         let deck = text(&model);
         let cards = "\

@@ -122,19 +122,8 @@ pub struct Forming {
 }
 
 impl Forming {
-    /// Adds the stresses of one shell. `history` holds the same number of values for each point;
-    /// `None`, and nothing added, if it does not.
-    pub fn add_stress(
-        &mut self,
-        element_id: u64,
-        n_plane: usize,
-        points: &[StressPoint],
-        history: &[f64],
-    ) -> Option<()> {
-        self.add_state(element_id, n_plane, points, history, &[])
-    }
-
-    /// The same with `tensors`, of which each point has the same number too.
+    /// Adds the stresses of one shell. `history` holds the same number of values for each point, and `tensors` the
+    /// same number of tensors; `None`, and nothing added, if they do not.
     pub fn add_state(
         &mut self,
         element_id: u64,
@@ -267,10 +256,10 @@ mod tests {
             plastic_strain: 0.1,
         }; 3];
         forming
-            .add_stress(7, 1, &points, &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+            .add_state(7, 1, &points, &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0], &[])
             .unwrap();
-        forming.add_stress(8, 1, &points[..1], &[]).unwrap();
-        assert_eq!(forming.add_stress(9, 1, &points, &[1.0, 2.0]), None);
+        forming.add_state(8, 1, &points[..1], &[], &[]).unwrap();
+        assert_eq!(forming.add_state(9, 1, &points, &[1.0, 2.0], &[]), None);
         forming.add_strain(8, 1, &[StrainPoint::default(); 2]);
         assert_eq!(forming.n_stress(), 2);
         assert_eq!(forming.stress(0).history, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);

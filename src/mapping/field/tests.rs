@@ -166,9 +166,12 @@ fn a_spin_within_the_plane_is_the_smallest_rotation_between_planes() {
 fn a_fold_is_no_neighbour_seen_from_below() {
     let flat = sheet(6);
     let is_beyond = |p: &Point3| p.x > 3.5;
-    let fold = |p: &Point3| match is_beyond(p) {
-        true => Point3::new(6.0 - p.x, p.y, 0.05 * (p.x - 2.0)),
-        false => *p,
+    let fold = |p: &Point3| {
+        if is_beyond(p) {
+            Point3::new(6.0 - p.x, p.y, 0.05 * (p.x - 2.0))
+        } else {
+            *p
+        }
     };
     let positions: Vec<Point3> = flat.positions().iter().map(fold).collect();
     let own = |element: usize| flat.centroids()[element].x > 3.0;

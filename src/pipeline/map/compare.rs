@@ -238,9 +238,12 @@ pub fn compare_with(
         let there = |element: usize| other.shown(element, &shown);
         Ok(difference(run, crash, layer, [&here, &there]))
     };
-    let if_mapped = |is_mapped: bool, value| match is_mapped {
-        true => difference(Some(value)),
-        false => Ok(None),
+    let if_mapped = |is_mapped: bool, value| {
+        if is_mapped {
+            difference(Some(value))
+        } else {
+            Ok(None)
+        }
     };
     Ok(ComparisonRecord {
         files: other

@@ -181,15 +181,16 @@ pub(super) fn lost_includes(
             n => format!("{first} and {} more", n - 1),
         };
         let [from, new, old, whole] = [&crash.path, *new, *old, whole].map(|path| path.display());
-        return Ok(Some(match is_copy {
-            true => format!(
+        return Ok(Some(if is_copy {
+            format!(
                 "{new} includes {what}, not found from its folder; move it to the folder of {old}, or write it there"
-            ),
+            )
+        } else {
             // It loses what the folder of the whole deck led to.
-            false => format!(
+            format!(
                 "{old} includes {what}, not found from the folder of {whole}; move that to the folder of {from}, or \
                  write it there"
-            ),
+            )
         }));
     }
     Ok(None)

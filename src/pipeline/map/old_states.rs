@@ -220,9 +220,10 @@ pub fn mapped_by_solver(crash: &LoadedPart) -> Vec<String> {
     let sets = &crash.model.sets.parts;
     let told = crash.model.stamped_includes.iter().filter_map(|include| {
         let set = sets.get(&include.onto).filter(|_| include.is_set);
-        let onto = match include.is_set {
-            true => set.map_or(&[][..], |set| &set.ids),
-            false => std::slice::from_ref(&include.onto),
+        let onto = if include.is_set {
+            set.map_or(&[][..], |set| &set.ids)
+        } else {
+            std::slice::from_ref(&include.onto)
         };
         let own: Vec<u64> = onto.iter().copied().filter(|id| ids.contains(id)).collect();
         (!own.is_empty()).then(|| {

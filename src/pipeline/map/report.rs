@@ -2,6 +2,7 @@
 
 use super::lists::givers;
 use super::record::{DistributionRecord, MapRecord, PairRecord, von_mises_of};
+use super::verdict::{change, change_text};
 use super::{
     CheckReason, CheckRecord, DifferenceRecord, MapRun, OtherResult, PipelineError, ProbeRecord,
     ProbedValue, ShownValue,
@@ -21,9 +22,7 @@ use crate::report::html::{
 };
 use crate::report::picture::{Paint, Picture, PictureMesh, picture};
 use crate::role::PerRole;
-use crate::text::{
-    Lengths, factor_note, fixed, grouped, length, millis, percent, signed, signed_percent,
-};
+use crate::text::{Lengths, factor_note, fixed, grouped, length, millis, percent, signed};
 
 /// Pixels of a picture.
 const SIZE: [usize; 2] = [560, 380];
@@ -129,8 +128,8 @@ fn facts(record: &MapRecord, lengths: Lengths) -> Vec<[String; 3]> {
         ("Mean plastic strain", &record.plastic_strain, ""),
     ] {
         if let Some(pair) = pair {
-            let change = pair.crash.mean / pair.stamped.mean - 1.0;
-            let note = format!("{} to stamped", signed_percent(change));
+            let change = change_text(change(pair.crash.mean, pair.stamped.mean));
+            let note = format!("{change} to stamped");
             let mean = format!("{}{suffix}", length(pair.crash.mean));
             facts.push([name.to_owned(), mean, note]);
         }
@@ -243,9 +242,10 @@ fn number_row(of: &DistributionRecord) -> NumberRow {
 fn swatch(file: usize) -> String {
     let (color, is_hatched) = ColorScale::file_look(file);
     let color = hex(color);
-    match is_hatched {
-        true => format!("repeating-linear-gradient(135deg,#262a30 0 2px,{color} 2px 6px)"),
-        false => color,
+    if is_hatched {
+        format!("repeating-linear-gradient(135deg,#262a30 0 2px,{color} 2px 6px)")
+    } else {
+        color
     }
 }
 

@@ -307,18 +307,32 @@ fn confidence(run: &MapRun) -> CheckRecord {
     }
 }
 
+/// What a value has changed by, as a fraction of what it was; `None` where nothing stands to compare it with.
+pub(super) fn change(now: f64, before: f64) -> Option<f64> {
+    if now == before {
+        return Some(0.0);
+    }
+    let change = now / before - 1.0;
+    change.is_finite().then_some(change)
+}
+
+/// A change as it is told; a dash where there is none.
+pub(super) fn change_text(change: Option<f64>) -> String {
+    change.map_or_else(|| "–".to_owned(), signed_percent)
+}
+
 fn mean(
     run: &MapRun,
     name: &str,
     pair: &PairRecord,
     (picture, value): (CheckPicture, Option<FormingValue>),
 ) -> CheckRecord {
-    let change = pair.crash.mean / pair.stamped.mean - 1.0;
+    let change = change(pair.crash.mean, pair.stamped.mean);
     CheckRecord {
         name: name.to_owned(),
-        found: signed_percent(change),
+        found: change_text(change),
         limit: format!("±{}", percent(MEAN_CHANGE)),
-        is_met: Some(change.abs() <= MEAN_CHANGE),
+        is_met: change.map(|change| change.abs() <= MEAN_CHANGE),
         reason: None,
         picture,
         worst: worst_difference(run, value),
@@ -354,8 +368,8 @@ fn beside_section(run: &MapRun) -> Option<CheckRecord> {
 /// Told and not judged: a finer mesh of a radius has more area.
 fn volume(run: &MapRun) -> Option<CheckRecord> {
     let (stamped, crash) = run.checks.thickness.as_ref()?;
-    let change = crash.mean * crash.area / (stamped.mean * stamped.area) - 1.0;
-    change.is_finite().then(|| CheckRecord {
+    let change = change(crash.mean * crash.area, stamped.mean * stamped.area)?;
+    Some(CheckRecord {
         name: "Volume of the sheet".to_owned(),
         found: signed_percent(change),
         limit: "for information".to_owned(),
@@ -385,17 +399,17 @@ fn balance(run: &MapRun, monitor: &Monitor) -> Result<Option<CheckRecord>, Cance
 fn peak(run: &MapRun, pair: &PairRecord, monitor: &Monitor) -> Result<CheckRecord, Cancelled> {
     let of_stamped = pair.stamped.max;
     let at_best = peak_at_best(run, monitor)?.filter(|best| *best < NARROW_PEAK * of_stamped);
-    let change = pair.crash.max / at_best.unwrap_or(of_stamped) - 1.0;
+    let change = change(pair.crash.max, at_best.unwrap_or(of_stamped));
     let [least, most] = PEAK_CHANGE.map(|change| fixed(100.0 * change, 0));
     let limit = format!("{least} % to +{most} %");
     Ok(CheckRecord {
         name: "Largest plastic strain".to_owned(),
-        found: signed_percent(change),
+        found: change_text(change),
         limit: match at_best {
             Some(_) => format!("{limit} of the mean there"),
             None => limit,
         },
-        is_met: Some((PEAK_CHANGE[0]..=PEAK_CHANGE[1]).contains(&change)),
+        is_met: change.map(|change| (PEAK_CHANGE[0]..=PEAK_CHANGE[1]).contains(&change)),
         reason: at_best.map(|_| CheckReason::PeakNarrowerThanElement),
         picture: CheckPicture::PlasticStrain,
         worst: largest(run, |element| run.plastic_strain(element)),
@@ -413,4 +427,19 @@ fn largest(run: &MapRun, number: impl Fn(usize) -> f64) -> Option<usize> {
     let finite = numbers.filter(|(_, number)| number.is_finite());
     let first = |best: (usize, f64), next: (usize, f64)| if next.1 > best.1 { next } else { best };
     finite.reduce(first).map(|(element, _)| element)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_change_is_told_only_of_what_was_there() {
+        assert_eq!(change(1.5, 1.0), Some(0.5));
+        assert_eq!(change(0.0, 0.2), Some(-1.0));
+        assert_eq!(change(0.0, 0.0), Some(0.0));
+        assert_eq!(change(0.1, 0.0), None);
+        assert_eq!(change(f64::NAN, 1.0), None);
+        assert_eq!(change_text(None), "–");
+    }
 }

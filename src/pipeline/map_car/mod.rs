@@ -426,9 +426,10 @@ impl Group<'_> {
             thickness_ratio: run.unusual_thickness(),
             is_displaced,
             files: files.files.iter().map(|file| name_of(&file.path)).collect(),
-            n_old_states: match recipe.map.options.replace_states {
-                true => 0,
-                false => files.n_old_states,
+            n_old_states: if recipe.map.options.replace_states {
+                0
+            } else {
+                files.n_old_states
             },
             new_states: files.new_states,
             by_solver: mapped_by_solver(&crash),

@@ -79,9 +79,10 @@ fn included_name(stamped: &LoadedPart) -> String {
 /// The same as it lies from a folder. `None` if that is not known, or no name that a card holds.
 fn name_from(folder: &Path, stamped: &LoadedPart) -> Option<String> {
     let whole = |folder: &Path| {
-        let folder = match folder.as_os_str().is_empty() {
-            true => Path::new("."),
-            false => folder,
+        let folder = if folder.as_os_str().is_empty() {
+            Path::new(".")
+        } else {
+            folder
         };
         std::fs::canonicalize(folder).ok()
     };

@@ -196,30 +196,16 @@ pub(crate) struct Spread {
 /// Where poses of a run lie in the caller's frames.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Frames {
-    /// True if the data is the target mesh, so that poses are inverted for the outside.
-    pub(crate) data_is_target: bool,
+    /// Which mesh supplies the points; of the target's, poses are inverted for the outside.
+    pub(crate) data_side: Side,
     /// What was done to the source before the match: a mirror, else the identity.
     pub(crate) mirror: Similarity,
 }
 
 impl Frames {
-    /// Which mesh supplies the points.
-    pub(crate) fn data_side(&self) -> Side {
-        if self.data_is_target {
-            Side::Target
-        } else {
-            Side::Source
-        }
-    }
-
     /// The pose as the outside sees it.
     pub(crate) fn target_from_source(&self, model_from_data: &Similarity) -> Similarity {
-        if self.data_is_target {
-            // The model is then the source, mirrored or not.
-            model_from_data.inverse().after(&self.mirror)
-        } else {
-            model_from_data.after(&self.mirror)
-        }
+        self.data_side.oriented(model_from_data).after(&self.mirror)
     }
 }
 

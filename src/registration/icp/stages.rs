@@ -15,18 +15,14 @@ use crate::registration::surface::Surface;
 #[serde(rename_all = "kebab-case")]
 pub enum Stage {
     /// All starts, few points: a wide basin matters, exactness does not.
-    #[serde(alias = "race")]
     Coarse,
     /// The best distinct ones, more points.
     Refine,
     /// The winner, all points of the full meshes.
-    #[serde(alias = "finish")]
     Full,
     /// A start run to its end: first with a wide basin …
-    #[serde(alias = "catch")]
     WideBasin,
     /// … then with the settings as given.
-    #[serde(alias = "settle", alias = "match")]
     Converge,
 }
 

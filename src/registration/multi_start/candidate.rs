@@ -62,16 +62,12 @@ pub(crate) struct DataChoice<'a> {
 
 impl DataChoice<'_> {
     pub(crate) fn data_side(&self) -> Side {
-        self.frames.data_side()
+        self.frames.data_side
     }
 
     /// The motion of the data that a start (a motion of the possibly mirrored source) stands for.
     fn model_from_data(&self, start: &Start) -> Similarity {
-        if self.frames.data_is_target {
-            start.target_from_source.inverse()
-        } else {
-            start.target_from_source
-        }
+        self.data_side().oriented(&start.target_from_source)
     }
 
     /// The rules of a stage between the surfaces of `pairing`.
@@ -142,13 +138,8 @@ impl Candidate {
 
     /// Where it is as a first pose of the source that was searched with.
     pub(super) fn as_start(&self, choice: &DataChoice<'_>) -> Start {
-        let pose = self.run.model_from_data;
         Start {
-            target_from_source: if choice.frames.data_is_target {
-                pose.inverse()
-            } else {
-                pose
-            },
+            target_from_source: choice.data_side().oriented(&self.run.model_from_data),
             ..self.start
         }
     }

@@ -269,7 +269,7 @@ impl<'a> MultiStart<'a> {
                 coarse
             },
             frames: Frames {
-                data_is_target: side == Side::Target,
+                data_side: side,
                 mirror: self.mirror.unwrap_or_default(),
             },
             mirrored: self.mirror.is_some(),
@@ -491,7 +491,7 @@ impl<'a> MultiStart<'a> {
         let swaps = self.settings.data_side == DataSide::Auto && last_stage_swaps(choice.fine);
         let (pairing, mut frames) = (choice.fine, choice.frames);
         let pairing = if swaps {
-            frames.data_is_target = !frames.data_is_target;
+            frames.data_side = frames.data_side.other();
             pairing.swapped()
         } else {
             pairing
@@ -541,7 +541,7 @@ impl<'a> MultiStart<'a> {
         let refined = Refined {
             target_from_source: frames.target_from_source(&run.model_from_data),
             run: run.clone(),
-            data_side: frames.data_side(),
+            data_side: frames.data_side,
             flipped,
             floor: rules.selection.floor,
             with_all_pairs: all.map(|pose| frames.target_from_source(&pose)),

@@ -216,7 +216,7 @@ pub(crate) fn run_every_start(
     monitor: &MatchMonitor<'_>,
 ) -> Result<(), Cancelled> {
     let Pairing { data, model } = choice.coarse;
-    let points = BothSigns::new(Data::new(all_nodes(data, true)));
+    let points = BothSigns::new(Data::new(all_nodes(data)));
     for stage in [Stage::WideBasin, Stage::Converge] {
         let rules = choice.rules(stage, settings, choice.coarse);
         let input = RoundInput {

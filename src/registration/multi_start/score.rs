@@ -9,6 +9,7 @@ use crate::registration::icp::{
     Correspondence, Floor, MatchRules, PairWith, RejectRules, Sample, SelectRules, Selection,
     correspond, edge_length, natural_floor, select,
 };
+use crate::registration::result::Side;
 use crate::registration::subsample::subsample;
 use crate::registration::surface::Surface;
 use crate::search::{ClosestPoint, FeatureGrid};
@@ -106,22 +107,8 @@ impl<'a> PoseScorer<'a> {
     pub(crate) fn score(&self, target_from_source: &Similarity, flipped: bool) -> TwoSided {
         let inverse = target_from_source.inverse();
         let (forward, backward) = rayon::join(
-            || {
-                self.one_side(
-                    (self.source, &self.source_samples),
-                    self.target,
-                    target_from_source,
-                    flipped,
-                )
-            },
-            || {
-                self.one_side(
-                    (self.target, &self.target_samples),
-                    self.source,
-                    &inverse,
-                    flipped,
-                )
-            },
+            || self.one_side(Side::Source, target_from_source, flipped),
+            || self.one_side(Side::Target, &inverse, flipped),
         );
         let [source_price, target_price] = self.hole_prices(target_from_source, &inverse);
         TwoSided {
@@ -143,13 +130,12 @@ impl<'a> PoseScorer<'a> {
         shares.map(|share| 1.0 + HOLE_PRICE * (1.0 - share.unwrap_or(1.0)))
     }
 
-    fn one_side(
-        &self,
-        (data, samples): (&Surface, &[Sample]),
-        model: &Surface,
-        model_from_data: &Similarity,
-        flipped: bool,
-    ) -> f64 {
+    /// Scores the points of one side, the data, on the other.
+    fn one_side(&self, data_side: Side, model_from_data: &Similarity, flipped: bool) -> f64 {
+        let (data, samples, model) = match data_side {
+            Side::Source => (self.source, &self.source_samples, self.target),
+            Side::Target => (self.target, &self.target_samples, self.source),
+        };
         let samples: Vec<Sample> = samples
             .iter()
             .map(|sample| Sample {
@@ -175,7 +161,7 @@ impl<'a> PoseScorer<'a> {
         let mut pairs = pairs.expect("nobody cancels a silent monitor");
         let area = |pairs: &[Correspondence]| pairs.iter().map(|pair| pair.weight).sum::<f64>();
         let whole = area(&pairs);
-        let is_smaller = std::ptr::eq(model, self.target) == self.source_is_smaller;
+        let is_smaller = (data_side == Side::Source) == self.source_is_smaller;
         let is_far_beyond = |pair: &Correspondence| match &self.far {
             Some(grid) => !is_smaller || is_beyond(grid, &pair.moved),
             None => false,

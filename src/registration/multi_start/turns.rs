@@ -80,11 +80,7 @@ pub(crate) fn turns(
         Start {
             kind: StartKind::Turned { index },
             flipped: best.start.flipped,
-            target_from_source: if choice.frames.data_is_target {
-                turned.inverse()
-            } else {
-                turned
-            },
+            target_from_source: choice.data_side().oriented(&turned),
         }
     };
     Ok(found.into_iter().enumerate().map(start).collect())

@@ -66,11 +66,7 @@ fn variation(
         kind: StartKind::Twin { axis },
         // A sheet that is flipped shows its other side.
         flipped: candidate.start.flipped != flips(motion, choice),
-        target_from_source: if choice.frames.data_is_target {
-            pose.inverse()
-        } else {
-            pose
-        },
+        target_from_source: choice.data_side().oriented(&pose),
     }
 }
 

@@ -17,34 +17,41 @@ const WORTH_LOSS: f64 = 3.0;
 /// … plus this.
 const WORTH_MORE: f64 = 0.1;
 
-/// Motions of the larger part on itself with a larger loss lay nothing on its like.
+/// Motions of the larger part on itself with a larger loss align nothing with its like.
 const ALIKE_LOSS: f64 = 0.7;
 
 /// The wide search of a pair, made ready once for both hands. The smaller part is the data.
 pub(crate) struct WideStarts<'a> {
     search: WideSearch<'a>,
-    data_is_target: bool,
+    data_side: Side,
     surfaces: [&'a Surface; 2],
     /// Source and target as grids, made when first asked for.
     grids: [Option<Arc<FeatureGrid>>; 2],
+}
+
+/// Where the surface and the grid of a side stand.
+fn place_of(side: Side) -> usize {
+    match side {
+        Side::Source => 0,
+        Side::Target => 1,
+    }
 }
 
 impl<'a> WideStarts<'a> {
     /// On the meshes of the coarse stage. `None` if a surface has no extent.
     pub(crate) fn of(input: &MatchInput<'a>) -> Option<Self> {
         let (source, target) = input.reduced.unwrap_or((input.source, input.target));
-        let data_is_target = target.measures().area < source.measures().area;
-        let (data, model) = if data_is_target {
-            (target, source)
+        let (data_side, data, model) = if target.measures().area < source.measures().area {
+            (Side::Target, target, source)
         } else {
-            (source, target)
+            (Side::Source, source, target)
         };
         let grid = Arc::new(surface_grid(model)?);
         let mut grids = [None, None];
-        grids[usize::from(!data_is_target)] = Some(Arc::clone(&grid));
+        grids[place_of(data_side.other())] = Some(Arc::clone(&grid));
         Some(Self {
             search: WideSearch::on(data, model, grid),
-            data_is_target,
+            data_side,
             surfaces: [source, target],
             grids,
         })
@@ -52,7 +59,7 @@ impl<'a> WideStarts<'a> {
 
     /// One of the surfaces as a grid.
     pub(crate) fn grid(&mut self, side: Side) -> Option<Arc<FeatureGrid>> {
-        let index = usize::from(side == Side::Target);
+        let index = place_of(side);
         if self.grids[index].is_none() {
             self.grids[index] = surface_grid(self.surfaces[index]).map(Arc::new);
         }
@@ -61,15 +68,15 @@ impl<'a> WideStarts<'a> {
 
     /// The larger part as a grid.
     pub(crate) fn larger(&self) -> Option<Arc<FeatureGrid>> {
-        self.grids[usize::from(!self.data_is_target)].clone()
+        self.grids[place_of(self.data_side.other())].clone()
     }
 
     /// Poses in which the smaller part lies on another place of the larger one that is shaped like the
-    /// one it lies on under `pose` (target from source, in the frames that were searched): what the
+    /// one it lies on under `start` (target from source, in the frames that were searched): what the
     /// wide search of the larger part on itself finds. Empty for parts of one size, whose own wide
     /// search has seen these places.
     pub(crate) fn alike(&self, start: &Start, monitor: &Monitor) -> Result<Vec<Start>, Cancelled> {
-        let model = self.surfaces[usize::from(!self.data_is_target)];
+        let model = self.surfaces[place_of(self.data_side.other())];
         let Some(grid) = self.larger().filter(|_| !self.search.is_whole()) else {
             return Ok(Vec::new());
         };
@@ -84,12 +91,11 @@ impl<'a> WideStarts<'a> {
             .map(|(index, find)| Start {
                 kind: StartKind::Alike { index },
                 flipped: start.flipped != find.flipped,
-                target_from_source: if self.data_is_target {
-                    start
+                target_from_source: match self.data_side {
+                    Side::Source => find.model_from_data.after(&start.target_from_source),
+                    Side::Target => start
                         .target_from_source
-                        .after(&find.model_from_data.inverse())
-                } else {
-                    find.model_from_data.after(&start.target_from_source)
+                        .after(&find.model_from_data.inverse()),
                 },
             });
         Ok(starts.collect())
@@ -104,11 +110,7 @@ impl<'a> WideStarts<'a> {
         let starts = found.iter().take_while(is_worth).map(|find| Start {
             kind: find.kind,
             flipped: find.flipped,
-            target_from_source: if self.data_is_target {
-                find.model_from_data.inverse()
-            } else {
-                find.model_from_data
-            },
+            target_from_source: self.data_side.oriented(&find.model_from_data),
         });
         Ok(starts.collect())
     }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::cloud::{Cloud, Motion32};
 use super::rounds::First;
-use super::seeds::{frame, laid, matrix};
+use super::seeds::{aligned, frame, matrix};
 use crate::geometry::{Matrix3, Point3, Rotation, Vector3};
 use crate::registration::surface::Surface;
 use crate::search::FeatureGrid;
@@ -85,10 +85,10 @@ impl Holes {
         let [data, model] = [(&self.data, MOST_HOLES[0]), (&self.model, MOST_HOLES[1])]
             .map(|(holes, most)| &holes[..holes.len().min(most)]);
         match data {
-            [only] => self.alike.lay_only(only, model, &mut found),
-            _ => self.alike.lay_pairs(data, model, &mut found),
+            [only] => self.alike.align_single(only, model, &mut found),
+            _ => self.alike.align_pairs(data, model, &mut found),
         }
-        let counted = found.par_iter().map(|first| self.laid(&first.motion).0);
+        let counted = found.par_iter().map(|first| self.aligned(&first.motion).0);
         let counts: Vec<usize> = counted.collect();
         let mut sorted = counts.clone();
         sorted.sort_unstable_by(|a, b| b.cmp(a));
@@ -102,7 +102,7 @@ impl Holes {
     }
 
     /// A motion of the data shifted so that its holes lie on their counterparts in the mean, and how many have one.
-    pub(super) fn laid(&self, motion: &Motion32) -> (usize, Motion32) {
+    pub(super) fn aligned(&self, motion: &Motion32) -> (usize, Motion32) {
         let (mut n, mut sum) = (0, Vector3::zeros());
         for hole in &self.data {
             let moved = motion.apply(&hole.center);
@@ -170,7 +170,7 @@ impl Alike {
     }
 
     /// The only hole of the data on each hole of the model that is as large, turned about its normal.
-    fn lay_only(&self, only: &Hole, of_model: &[Hole], found: &mut Vec<First>) {
+    fn align_single(&self, only: &Hole, of_model: &[Hole], found: &mut Vec<First>) {
         for hole in of_model {
             if !self.are_as_large(only, hole) {
                 continue;
@@ -183,14 +183,14 @@ impl Alike {
                 let turn = frame(&hole.normal, &Vector3::x()) * turn * own.transpose();
                 found.push(First {
                     flipped,
-                    motion: laid(&turn, &only.center, &hole.center),
+                    motion: aligned(&turn, &only.center, &hole.center),
                 });
             }
         }
     }
 
     /// Every two holes of the data on every two of the model that stand to each other as they do.
-    fn lay_pairs(&self, of_data: &[Hole], of_model: &[Hole], found: &mut Vec<First>) {
+    fn align_pairs(&self, of_data: &[Hole], of_model: &[Hole], found: &mut Vec<First>) {
         let there: Vec<Two> = (0..of_model.len())
             .flat_map(|k| (0..of_model.len()).map(move |l| [k, l]))
             .filter_map(|two| self.two(of_model, two))
@@ -206,7 +206,7 @@ impl Alike {
                 if self.stand_alike(&own, other) {
                     found.push(First {
                         flipped,
-                        motion: laid(
+                        motion: aligned(
                             &(other.frame * own.frame.transpose()),
                             &own.middle,
                             &other.middle,

@@ -124,7 +124,7 @@ const ROUNDS: [Round; 5] = [
     },
 ];
 
-/// What holes lay together lies within a few hundredths of where it belongs: all of it is looked at, and the better
+/// What holes align lies within a few hundredths of where it belongs: all of it is looked at, and the better
 /// part moved.
 const HOLE_ROUNDS: [Round; 4] = [
     Round {
@@ -236,7 +236,7 @@ impl<'a> WideSearch<'a> {
         let ground = self.ground(&self.cloud);
         let first = holes.first_poses().into_iter();
         let survivors = rounds::run(ground, first, &HOLE_ROUNDS, monitor)?.into_iter();
-        let moved = survivors.map(|candidate| holes.laid(&candidate.motion));
+        let moved = survivors.map(|candidate| holes.aligned(&candidate.motion));
         let mut moved: Vec<(usize, Motion32)> = moved.collect();
         let most = moved.iter().map(|(n, _)| *n).max().unwrap_or(0);
         moved.retain(|(n, _)| *n == most && *n > 0);

@@ -52,7 +52,7 @@ pub(super) fn seeds(
     let axes = cloud_axes(cloud, data);
     let rotations = super_fibonacci(counts.rotations);
     for place in 0..counts.places {
-        // The first place lays centre on centre, the others the middle of the data on a point.
+        // The first place aligns the centres, the others the middle of the data with a point.
         let (from, to) = match place {
             0 => (Vector3::zeros(), centroid),
             _ => (scene.middle, spread[(place - 1) % spread.len()]),
@@ -65,7 +65,7 @@ pub(super) fn seeds(
                     rotation: index,
                     place,
                 },
-                |_| laid(&turn, &from, &to),
+                |_| aligned(&turn, &from, &to),
             );
         }
     }
@@ -83,7 +83,7 @@ pub(super) fn seeds(
                             Rotation::from_axis_angle(&Vector3::z_axis(), angle_deg.to_radians());
                         let turn =
                             there.frame(false) * matrix(&turn) * whole.frame(flipped).transpose();
-                        laid(&turn, &whole.center, &there.center)
+                        aligned(&turn, &whole.center, &there.center)
                     },
                 );
             }
@@ -112,8 +112,8 @@ fn local(point: [f32; 3]) -> Vector3 {
     Vector3::from(point.map(f64::from))
 }
 
-/// The motion that turns by `turn` and lays `from` on `to`.
-pub(super) fn laid(turn: &Matrix3, from: &Vector3, to: &Vector3) -> Motion32 {
+/// The motion that turns by `turn` and moves `from` onto `to`.
+pub(super) fn aligned(turn: &Matrix3, from: &Vector3, to: &Vector3) -> Motion32 {
     let translation = to - turn * from;
     Motion32 {
         rotation: std::array::from_fn(|i| std::array::from_fn(|j| turn[(i, j)] as f32)),

@@ -119,9 +119,10 @@ impl MapReport {
         let asked = || self.checks.iter().filter(|check| check.is_met.is_some());
         let missed: Vec<&CheckReport> = asked().filter(|c| c.is_met == Some(false)).collect();
         let n_asked = asked().count();
-        let (class, sign) = match missed.is_empty() {
-            true => ("verdict good", "✔"),
-            false => ("verdict check", "!"),
+        let (class, sign) = if missed.is_empty() {
+            ("verdict good", "✔")
+        } else {
+            ("verdict check", "!")
         };
         html! {
             @if n_asked > 0 {
@@ -327,10 +328,13 @@ impl QuantityReport {
             div.scale { (charts::plain_legend(&self.scales[0], &self.name)) }
             div.scale { (charts::plain_legend(&self.scales[1], self.difference)) }
             (table("Distribution, weighted by area", &columns, &rows))
-            (charts::two_histograms(&self.shares, self.range, &self.name))
-            ul.legend {
-                li { i style="background:var(--stamped);opacity:.45" {} (self.sides[0]) }
-                li { i.line style="border-color:var(--crash)" {} (self.sides[1]) }
+            // Values that are all one have no axis to stand on.
+            @if self.range[0] < self.range[1] {
+                (charts::two_histograms(&self.shares, self.range, &self.name))
+                ul.legend {
+                    li { i style="background:var(--stamped);opacity:.45" {} (self.sides[0]) }
+                    li { i.line style="border-color:var(--crash)" {} (self.sides[1]) }
+                }
             }
             (fact_table("Both histograms", &facts))
         }

@@ -180,9 +180,10 @@ fn pose_ui(ui: &mut Ui, state: &AppState) {
         return;
     };
     let text = format!("Pose: {words}");
-    let color = match origin.is_good() {
-        Some(false) => Palette::of(ui).check,
-        _ => ui.visuals().weak_text_color(),
+    let color = if origin.is_good() == Some(false) {
+        Palette::of(ui).check
+    } else {
+        ui.visuals().weak_text_color()
     };
     ui.add(egui::Label::new(egui::RichText::new(text).color(color)).wrap());
 }

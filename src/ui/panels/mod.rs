@@ -84,10 +84,12 @@ pub fn window_ui(
     };
     let window = ui.ctx().content_rect().size();
     let is_tiny = window.x < TINY.x || window.y < TINY.y;
-    let column_room = match COLUMN_SHARE * window.x < COLUMN_RANGE[0] {
-        false => ColumnRoom::Enough,
-        true if is_tiny => ColumnRoom::Tiny,
-        true => ColumnRoom::Narrow,
+    let column_room = if COLUMN_SHARE * window.x >= COLUMN_RANGE[0] {
+        ColumnRoom::Enough
+    } else if is_tiny {
+        ColumnRoom::Tiny
+    } else {
+        ColumnRoom::Narrow
     };
     if column_room != state.view.column_room {
         commands.push(ViewCommand::SetColumnRoom(column_room).into());

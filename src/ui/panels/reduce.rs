@@ -6,8 +6,8 @@ use egui::{Response, Slider, Ui, vec2};
 
 use super::section::section_ui;
 use crate::app::{
-    Action, AppState, ColorBy, Command, LevelResult, Part, ReduceCommand, Section, Settings,
-    ViewCommand, duration_text,
+    Action, AppState, ColorBy, Command, LevelResult, LogStep, Part, ReduceCommand, Section,
+    Settings, ViewCommand, duration_text,
 };
 use crate::jobs::{JobKey, MeasuredLevel};
 use crate::role::{PerRole, Role};
@@ -339,7 +339,7 @@ fn error_text(role: Role, level: &MeasuredLevel, state: &AppState) -> String {
         None => return String::new(),
     };
     let rows = state.log.rows().iter().rev();
-    let mut reductions = rows.filter(|r| r.step == "reduce" && r.role == Some(role));
+    let mut reductions = rows.filter(|r| r.step == LogStep::Reduce && r.role == Some(role));
     if let Some(took) = reductions.next().and_then(|row| row.took) {
         text += &format!(" · {}", unbroken(&duration_text(took)));
     }

@@ -402,9 +402,10 @@ impl Drawing<'_> {
                 .color(color(style.rgb))
                 .width(width)
                 .allow_hover(false);
-            plot.line(match style.is_dashed {
-                true => line.style(LineStyle::dashed_dense()),
-                false => line,
+            plot.line(if style.is_dashed {
+                line.style(LineStyle::dashed_dense())
+            } else {
+                line
             });
         }
     }

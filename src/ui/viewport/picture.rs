@@ -289,9 +289,10 @@ fn drawable(state: &AppState, view: &ViewFrame, look: &Look, layer: &Layer) -> D
     } else {
         (0.0, 0.0)
     };
-    let color = match layer.instance.is_ghost {
-        true => look.ghost(role),
-        false => surface_color(state, view, look, layer),
+    let color = if layer.instance.is_ghost {
+        look.ghost(role)
+    } else {
+        surface_color(state, view, look, layer)
     };
     let part = state.document.part(role);
     let part = part.filter(|_| !layer.instance.is_ghost && !layer.is_further());

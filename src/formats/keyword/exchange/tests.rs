@@ -108,9 +108,12 @@ fn what_is_put_at_the_end_is_chosen_by_what_was_found() {
         let rules = ExchangeRules {
             included_as: IncludedAs::default(),
             list_layout: None,
-            exchange_of: &|found| match found == id {
-                true => Exchange::Listed,
-                false => Exchange::Other,
+            exchange_of: &|found| {
+                if found == id {
+                    Exchange::Listed
+                } else {
+                    Exchange::Other
+                }
             },
             leaves_out: None,
             states: &|found| {

@@ -44,7 +44,6 @@ pub struct StartSettings {
     /// Search all rotations, both directions of the normals and, where the sizes differ, all places of
     /// the larger part, and run what survives like the other starts. Where poses are given, only if
     /// none of them gives an acceptable fit.
-    #[serde(alias = "extra_starts", alias = "widen")]
     pub wide_search: bool,
 }
 
@@ -106,8 +105,6 @@ pub enum StartKind {
         place: usize,
     },
     /// Where the parts lay.
-    // "swapped" named a start that no version made; a file with that word still opens.
-    #[serde(alias = "swapped")]
     CurrentPose,
     /// A pose passed in.
     Given {

@@ -7,7 +7,8 @@ use egui::{Align, Layout, Rect, RichText, Sense, TextStyle, Ui, Vec2};
 use egui_extras::{Column, TableBuilder, TableRow};
 
 use crate::app::{
-    Action, AppState, Command, ExportCommand, LogRow, NoticeLevel, clock_text, duration_text,
+    Action, AppState, Command, ExportCommand, LogRow, LogStep, NoticeLevel, clock_text,
+    duration_text,
 };
 use crate::pipeline::outputs::Output;
 use crate::text::counted;
@@ -24,9 +25,6 @@ const MARGIN: f32 = 4.0;
 const GAP: f32 = 8.0;
 /// In a pane narrower than this the time of day is left to the tooltip.
 const NARROW: f32 = 420.0;
-
-/// The step whose text is the outcome.
-const RESULT: &str = "result";
 
 /// Rows that show their whole text, by their index.
 type Opened = BTreeSet<usize>;
@@ -121,10 +119,12 @@ impl Lines {
     /// All of a row that was opened. What came out of a match and what went wrong are shown with as many as fit, so
     /// that the newest row begins in sight; other rows take one.
     fn of(row: &LogRow, is_opened: bool, fitting: Self) -> Self {
-        match is_opened {
-            true => Self(usize::MAX),
-            false if row.step == RESULT || row.level >= NoticeLevel::Warning => fitting,
-            false => Self::ONE,
+        if is_opened {
+            Self(usize::MAX)
+        } else if row.step == LogStep::Result || row.level >= NoticeLevel::Warning {
+            fitting
+        } else {
+            Self::ONE
         }
     }
 }
@@ -162,7 +162,7 @@ fn row_ui(table_row: &mut TableRow<'_, '_>, row: &LogRow, is_narrow: bool, lines
         });
     }
     table_row.col(|ui| {
-        ui.add(egui::Label::new(row.step).selectable(false));
+        ui.add(egui::Label::new(row.step.label()).selectable(false));
     });
     table_row.col(|ui| role_cell(ui, row));
     table_row.col(|ui| text_cell(ui, row, lines));
@@ -216,7 +216,7 @@ fn hover_text(row: &LogRow) -> String {
     format!(
         "{} {}{took}\n{}\nClick for the whole text",
         clock_text(row.at),
-        row.step,
+        row.step.label(),
         text_of(row)
     )
 }

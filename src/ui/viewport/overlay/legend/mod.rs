@@ -356,9 +356,10 @@ fn dragged(ui: &Ui, id: egui::Id, last: Rect) -> Vec2 {
     let response = response.on_hover_and_drag_cursor(egui::CursorIcon::Grab);
     let id = id.with("moved");
     let before: Vec2 = ui.data(|data| data.get_temp(id)).unwrap_or_default();
-    let moved = match response.double_clicked() {
-        true => Vec2::ZERO,
-        false => before + response.drag_delta(),
+    let moved = if response.double_clicked() {
+        Vec2::ZERO
+    } else {
+        before + response.drag_delta()
     };
     if moved != before {
         ui.data_mut(|data| data.insert_temp(id, moved));
