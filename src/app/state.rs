@@ -165,10 +165,12 @@ impl AppState {
 
     /// True while something else than the real pose is drawn.
     pub fn is_preview(&self) -> bool {
-        self.previews.live.is_some()
-            || self.is_as_loaded()
-            || self.shown_start().is_some()
-            || self.previewed_pose().is_some()
+        self.previews.live.is_some() || self.is_chosen_preview()
+    }
+
+    /// True while a preview is chosen that the user can close, unlike the pose of the running match.
+    pub(super) fn is_chosen_preview(&self) -> bool {
+        self.is_as_loaded() || self.shown_start().is_some() || self.previewed_pose().is_some()
     }
 
     /// True while the stamped part is shown where its file has it, in spite of its pose.

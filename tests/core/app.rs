@@ -213,6 +213,13 @@ impl Window {
         }
     }
 
+    /// Closes every toast, so that Escape finds none.
+    pub fn close_toasts(&mut self) {
+        while let Some(id) = self.state.log.notices.toasts().next().map(|n| n.id) {
+            self.apply(NoticeCommand::Dismiss(id));
+        }
+    }
+
     pub fn submit(&mut self, kind: JobKind, stamp: Stamp) {
         self.n_jobs += 1;
         let id = JobId(self.n_jobs);
@@ -795,6 +802,7 @@ fn a_move_by_keys_ends_before_what_it_stands_on_changes() {
     let (mut window, before) = begun();
     window.holds = true;
     window.act(Action::MatchOrStop);
+    window.close_toasts();
     window.apply(Command::Escape);
     assert!(window.state.moving.tool.is_none());
     assert_eq!(window.state.document.pose, before.pose);
@@ -917,13 +925,16 @@ fn recent_files_of_one_name_are_told_apart_by_folder_and_part() {
     let mut window = Window::with_both();
     let role = |window: &Window, name: &str| {
         let roles = &window.state.settings.opened_as;
-        roles.get(Path::new(name)).copied()
+        roles.get(&std::path::absolute(name).unwrap()).copied()
     };
     assert_eq!(role(&window, "crash.k"), Some(Role::Crash));
     assert_eq!(role(&window, "stamped.k"), Some(Role::Stamped));
     window.act(Action::Swap);
     assert_eq!(role(&window, "crash.k"), Some(Role::Stamped));
-    window.apply(FileCommand::ForgetRecent(PathBuf::from("crash.k")));
+    // A file that was named from the folder that the program runs in is found from any other.
+    let crash = std::path::absolute("crash.k").unwrap();
+    assert!(window.state.settings.recent.contains(&crash));
+    window.apply(FileCommand::ForgetRecent(crash));
     assert_eq!(role(&window, "crash.k"), None);
 }
 
@@ -1079,6 +1090,17 @@ fn while_a_match_runs_inputs_are_locked_and_cancel_restores() {
     };
     window.apply(Command::Live(Box::new(live)));
     assert_eq!(window.state.shown_pose(), shifted(5.0));
+    // A message, and windows without panels, are closed before the run is given up.
+    window.close_toasts();
+    window.apply(NoticeCommand::Tell(NoticeLevel::Warning, "look".into()));
+    window.act(Action::ToggleGraphicsOnly);
+    for _ in 0..2 {
+        window.apply(Command::Escape);
+        assert!(window.state.jobs.is_active(JobKey::Match));
+        assert_eq!(window.state.shown_pose(), shifted(5.0));
+    }
+    assert!(toasts(&window.state).is_empty());
+    assert!(!window.state.view.is_graphics_only);
     window.apply(Command::Escape);
     assert_eq!(window.state.shown_pose(), Similarity::identity());
     assert_eq!(window.state.document, before);
@@ -1787,6 +1809,7 @@ fn escape_ends_the_reduction_of_both_parts() {
     // The worker has begun with the first.
     let (key, stamp) = jobs[0];
     window.tell(JobId(1), key, stamp, JobStage::Started);
+    window.close_toasts();
     let ended: Vec<JobKey> = window
         .state
         .apply(Command::Escape)

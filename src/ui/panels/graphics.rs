@@ -259,7 +259,7 @@ fn loading_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Comm
     ui.add(egui::Label::new(RichText::new(job.words()).color(Palette::of(ui).secondary)).wrap());
     ui.add_space(UNIT);
     if ui.button("Cancel loading").clicked() {
-        commands.push(Command::Escape);
+        commands.push(Command::CancelPresent);
     }
 }
 
