@@ -89,13 +89,14 @@ fn steps_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             } else {
                 (Takes::length(name, state.lengths(), MOVES), 0.5)
             };
+            let before = value;
             let field = takes
                 .field(&mut value)
                 .speed(speed)
                 .max_decimals(6)
                 .min_size(vec2(68.0, ROW));
             let spoken = format!("{name} by");
-            let (_, refused) = told_field(ui, &spoken, field, |text| takes.read(text));
+            let (_, refused) = told_field(ui, &spoken, before, field, |text| takes.read(text));
             for axis in Axis::ALL {
                 let label = format!("{} {}", if value < 0.0 { "−" } else { "+" }, axis.letter());
                 let spoken = format!("{name} by {value}{unit} on {}", axis.letter());
@@ -233,7 +234,7 @@ fn fields_ui(
                 .fixed_decimals(decimals)
                 .speed(0.5)
                 .min_size(vec2(width, ROW));
-            let (response, why) = told_field(ui, &name, field, |text| takes.read(text));
+            let (response, why) = told_field(ui, &name, before, field, |text| takes.read(text));
             refused = refused.take().or(why);
             // A field that was only looked into holds the value as it is shown.
             let is_other = fixed(value, decimals) != fixed(before, decimals);

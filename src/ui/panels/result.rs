@@ -208,13 +208,14 @@ fn tolerance_ui(
         }
         let takes = Takes::length(setting.label, state.lengths(), limits::LENGTH);
         let lengths = state.lengths();
+        let before = shown;
         let field = takes.field(&mut shown).speed(0.01 * usual).max_decimals(4);
         let field = if is_automatic {
             field.custom_formatter(move |value, _| lengths.number(value))
         } else {
             field
         };
-        let (field, why) = told_field(ui, setting.label, field, |text| match text.trim() {
+        let (field, why) = told_field(ui, setting.label, before, field, |text| match text.trim() {
             // The automatic one.
             "" => Ok(0.0),
             text => takes.read(text),
