@@ -59,7 +59,7 @@ pub use unbent::without_bend;
 pub use uncertainty::{PartDirection, PoseUncertainty};
 pub use verdict::Verdict;
 pub use whole::placed_as_a_whole;
-pub use words::{beside, error_beside};
+pub use words::{as_well, beside, error_beside};
 
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};

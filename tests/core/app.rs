@@ -844,6 +844,13 @@ fn a_match_is_one_step_and_its_alternatives_are_one_key_away() {
         window.act(Action::NextAlternative);
         assert_eq!(window.pose(), shifted(x));
         assert!(window.state.document.current_result().is_some());
+        let row = &window.state.stamped_rows()[0];
+        let number = match row.state {
+            StampedState::Alternative(_, number) => number,
+            StampedState::Matched(..) => 1,
+            _ => 0,
+        };
+        assert_eq!(number as f64, x, "section 4 names the pose");
     }
     window.apply(MoveCommand::Flip(Axis::X));
     assert!(window.state.stale(Section::Match).is_some());
