@@ -2,8 +2,8 @@
 //! about it comes after.
 
 use super::{
-    AppState, Command, Dialog, Effect, FreeWindow, MatchCommand, NoticeCommand, Section, Settings,
-    ViewCommand,
+    AppState, Command, Dialog, Effect, FreeWindow, MatchCommand, NoticeCommand, Reason, Section,
+    Settings, ViewCommand,
 };
 use crate::role::Role;
 
@@ -25,10 +25,15 @@ impl AppState {
             self.view.sections.arrange();
         }
         let was_start_shown = self.shown_start().is_some();
+        let was_locked = self.jobs.is_unlocked().err();
         let mut effects = self.apply_one(command);
         while !self.follow_ups.is_empty() {
             let follow_up = self.follow_ups.remove(0);
             effects.extend(self.follow(follow_up));
+        }
+        // That it stood in the way was said while it did.
+        if let Some(Reason(why)) = was_locked.filter(|_| self.jobs.is_unlocked().is_ok()) {
+            self.log.notices.withdraw_text(why);
         }
         if self.shown_start().is_some() != was_start_shown {
             self.with_scene(|view, scene| view.keep_whole(Role::Crash, scene));

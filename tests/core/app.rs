@@ -215,7 +215,11 @@ impl Window {
 
     /// Closes every toast, so that Escape finds none.
     pub fn close_toasts(&mut self) {
-        while let Some(id) = self.state.log.notices.toasts().next().map(|n| n.id) {
+        loop {
+            let next = self.state.log.notices.toasts().next();
+            let Some(id) = next.map(|notice| notice.id) else {
+                return;
+            };
             self.apply(NoticeCommand::Dismiss(id));
         }
     }
@@ -1097,9 +1101,16 @@ fn while_a_match_runs_inputs_are_locked_and_cancel_restores() {
     };
     window.apply(Command::Live(Box::new(live)));
     assert_eq!(window.state.shown_pose(), shifted(5.0));
+    assert_eq!(
+        window.state.can_map(),
+        Err(Reason("A match is running.")),
+        "none need be begun"
+    );
     // A message, and windows without panels, are closed before the run is given up.
     window.close_toasts();
-    window.apply(NoticeCommand::Tell(NoticeLevel::Warning, "look".into()));
+    let running = "A match is running.";
+    window.apply(NoticeCommand::Tell(NoticeLevel::Note, running.into()));
+    assert_eq!(toasts(&window.state), [running]);
     window.act(Action::ToggleGraphicsOnly);
     for _ in 0..2 {
         window.apply(Command::Escape);
@@ -1113,6 +1124,9 @@ fn while_a_match_runs_inputs_are_locked_and_cancel_restores() {
     assert_eq!(window.state.document, before);
     assert!(!window.state.jobs.is_busy());
     assert_eq!(window.state.match_starts().len(), 1);
+    let mut kept = window.state.log.notices.kept();
+    let told = kept.find(|notice| notice.text == running);
+    assert!(told.is_some_and(|notice| !notice.is_unread), "it is over");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::MatchState;
 use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
-use crate::app::{Effect, MatchResult, facts};
+use crate::app::{Effect, MatchResult, NoticeLevel, facts};
 use crate::geometry::Similarity;
 use crate::jobs::Stamp;
 use crate::pipeline::match_parts::MatchRun;
@@ -42,7 +42,8 @@ impl MatchState {
         work.log.push(level, "result", None, line.clone(), None);
         work.follow(FollowUp::Matched {
             before,
-            level,
+            // What was found is no failure: its message goes with the result.
+            level: level.min(NoticeLevel::Warning),
             line: line.clone(),
         });
         if took >= LONG_RUN {
