@@ -108,6 +108,8 @@ fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         .max_height(room)
         .min_scrolled_height(room);
     sheet.show(ui, |ui| {
+        // The frames of the widest fields lie beside the edge, not under it.
+        ui.set_max_width(ui.available_width() - 4.0);
         group_title(ui, "Display");
         display_ui(ui, &mut settings);
         map_row(ui, "Deviation colours", &mut settings.signed_map);
