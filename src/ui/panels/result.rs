@@ -1,6 +1,6 @@
 //! The verdict card and the matrix.
 
-use egui::{Button, RichText, Ui, vec2};
+use egui::{Button, Event, RichText, Ui, vec2};
 
 use super::explain;
 use super::section::unfolded;
@@ -10,7 +10,7 @@ use crate::jobs::{JobKey, Stamp};
 use crate::registration::{group_starts, limits};
 use crate::report::distances::{OVERLAP_HELP, OVERLAP_SPREAD};
 use crate::report::{PoseRecord, few_agree_words, number, start_counts};
-use crate::role::PerRole;
+use crate::role::{PerRole, Role};
 use crate::settings::setting;
 use crate::text::{capital, fixed, sentence, vector, whole_percent};
 use crate::ui::panels::mapping::STALE;
@@ -55,7 +55,7 @@ pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 /// A new result comes into sight by itself, and stays there while the sections around it are arranged: until the
-/// user scrolls or presses something in the column. Not where the user scrolled while the match ran.
+/// user scrolls in the column or does something. Not where the user scrolled while the match ran.
 #[derive(Debug, Clone, Copy, Default)]
 struct InSight {
     stamp: Option<Stamp>,
@@ -77,9 +77,16 @@ impl InSight {
         let before: Self = ui.data(|data| data.get_temp(id)).unwrap_or_default();
         let stamp = state.document.result.as_ref().map(|result| result.stamp);
         let is_in_column = ui.rect_contains_pointer(ui.clip_rect());
-        let [is_scrolling, is_pressed] = ui.input(|input| {
+        let (is_scrolling, is_pressed) = ui.input(|input| {
             let is_scrolling = input.smooth_scroll_delta().y != 0.0;
-            [is_scrolling, input.pointer.any_pressed()].map(|is| is && is_in_column)
+            // Keys and screen readers may lead elsewhere too.
+            let mut events = input.events.iter();
+            let is_led = events.any(|event| {
+                let is_key = matches!(event, Event::Key { pressed: true, .. });
+                is_key || matches!(event, Event::AccessKitActionRequest(_))
+            });
+            let is_pressed = is_led || is_in_column && input.pointer.any_pressed();
+            (is_scrolling && is_in_column, is_pressed)
         });
         let mut now = Self {
             stamp,
@@ -114,7 +121,7 @@ impl InSight {
 /// shifts nothing there.
 pub fn pose_by_hand_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let is_alone = state.document.result.is_none() && state.document.has_pose();
-    if is_alone && Action::CopyMatrix.enabled(state).is_ok() {
+    if is_alone && state.document.has_part(Role::Stamped).is_ok() {
         matrix_ui(ui, state, commands);
     }
 }
@@ -495,7 +502,7 @@ fn grid_ui(ui: &mut Ui, rows: &[[f64; 4]; 4]) {
 /// What people expect of a translation: how far the part's centre goes, and how much it turns.
 fn moved_ui(ui: &mut Ui, state: &AppState) {
     let pose = state.document.crash_from_stamped();
-    let Some(part) = state.document.part(crate::role::Role::Stamped) else {
+    let Some(part) = state.document.part(Role::Stamped) else {
         return;
     };
     let center = part.bounds().center();
