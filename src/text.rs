@@ -37,6 +37,14 @@ pub fn percent(fraction: f64) -> String {
     in_percent(fraction, 1)
 }
 
+/// A share of something that is there, however little it is: `< 0.1 %`, never `0.0 %`.
+pub fn share(fraction: f64) -> String {
+    match percent(fraction) {
+        none if fraction > 0.0 && none == percent(0.0) => "< 0.1 %".to_owned(),
+        shown => shown,
+    }
+}
+
 /// A fraction in whole percent, for what changes while it is read: `87 %`.
 pub fn whole_percent(fraction: f64) -> String {
     in_percent(fraction, 0)
@@ -372,6 +380,9 @@ mod tests {
     #[test]
     fn fractions_and_times_are_short() {
         assert_eq!(percent(0.8704), "87.0 %");
+        assert_eq!(share(0.8704), "87.0 %");
+        assert_eq!(share(0.0003), "< 0.1 %");
+        assert_eq!(share(0.0), "0.0 %");
         assert_eq!(whole_percent(0.8704), "87 %");
         // Less than all is not all; what sums lose is nothing.
         let read = [0.999_49, 0.999_6, 1.0 - 1e-12, 1.0, 1.05].map(percent);

@@ -2,8 +2,8 @@
 //! about it comes after.
 
 use super::{
-    AppState, Command, Dialog, Effect, FreeWindow, LogStep, MatchCommand, NoticeCommand, Section,
-    Settings, ViewCommand,
+    AppState, Command, Dialog, Effect, FreeWindow, LogStep, MatchCommand, NoticeCommand, Reason,
+    Section, Settings, ViewCommand,
 };
 use crate::role::Role;
 
@@ -25,10 +25,15 @@ impl AppState {
             self.view.sections.arrange();
         }
         let was_start_shown = self.shown_start().is_some();
+        let was_locked = self.jobs.is_unlocked().err();
         let mut effects = self.apply_one(command);
         while !self.follow_ups.is_empty() {
             let follow_up = self.follow_ups.remove(0);
             effects.extend(self.follow(follow_up));
+        }
+        // That it stood in the way was said while it did.
+        if let Some(Reason(why)) = was_locked.filter(|_| self.jobs.is_unlocked().is_ok()) {
+            self.log.notices.withdraw_text(why);
         }
         if self.shown_start().is_some() != was_start_shown {
             self.with_scene(|view, scene| view.keep_whole(Role::Crash, scene));
@@ -85,6 +90,7 @@ impl AppState {
             Command::Settings(settings) => return self.apply_settings(*settings),
             Command::Job(event) => return self.take_job_event(*event),
             Command::Live(live) => self.take_live(*live),
+            Command::CancelPresent => return self.work().cancel_present(),
             Command::Escape => return self.escape(),
             Command::Quit => return self.quit(),
         }
@@ -137,37 +143,37 @@ impl AppState {
         effects
     }
 
-    /// Ends what is on top: a dialog, a move by keys, a preview, then the running match; then closes the
-    /// messages.
+    /// Closes what is open, the topmost first: a dialog, a tool, a preview, the messages, a marked place, the
+    /// windows without panels. Only when nothing is open it ends the run, and at last the selection.
     fn escape(&mut self) -> Vec<Effect> {
-        let is_preview = self.is_preview();
+        let is_preview = self.is_chosen_preview();
         let (mut work, topics) = self.split();
+        let work = &mut work;
         if topics.view.dialog.take().is_some() {
-            Vec::new()
-        } else if topics.moving.tool.is_some() {
-            topics.moving.reject_tool(&mut work);
-            Vec::new()
-        } else if topics.pairs.tool.take().is_some() {
-            Vec::new()
-        } else if let Some(key) = work.jobs.locking_job() {
-            work.cancel(key)
-        } else if is_preview {
-            work.previews.drop_all();
-            Vec::new()
-        } else if work.jobs.is_busy() {
-            let key = work.jobs.running().map(|job| job.key);
-            // What was asked for both parts at once is one work.
-            let both = key
-                .into_iter()
-                .flat_map(|key| [Some(key), key.of_other_part()]);
-            both.flatten().flat_map(|key| work.cancel(key)).collect()
-        } else if work.log.notices.close_toasts() || topics.inspect.forget_place() {
-            Vec::new()
-        } else {
-            topics.parts.selected.clear();
-            topics.view.is_graphics_only = false;
-            Vec::new()
+            return Vec::new();
         }
+        if topics.moving.tool.is_some() {
+            topics.moving.reject_tool(work);
+            return Vec::new();
+        }
+        if topics.pairs.tool.take().is_some() {
+            return Vec::new();
+        }
+        if is_preview {
+            work.previews.drop_all();
+            return Vec::new();
+        }
+        let is_closed = work.log.notices.close_toasts()
+            || topics.inspect.forget_place()
+            || std::mem::take(&mut topics.view.is_graphics_only);
+        if is_closed {
+            return Vec::new();
+        }
+        if work.jobs.is_busy() {
+            return work.cancel_present();
+        }
+        topics.parts.selected.clear();
+        Vec::new()
     }
 
     /// Leaves at once, or asks first if something would be lost.

@@ -44,7 +44,9 @@ pub enum Command {
     Job(Box<JobEvent>),
     /// The worker's latest progress and iterations.
     Live(Box<Live>),
-    /// Ends the present tool, preview or run, whichever is on top.
+    /// Ends the job that holds the inputs, else the one that runs, without a result.
+    CancelPresent,
+    /// Closes what is open, the topmost first; ends the run when nothing is.
     Escape,
     /// Leave the program.
     Quit,

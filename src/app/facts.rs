@@ -105,11 +105,12 @@ pub(super) fn match_line(run: &MatchRun, lengths: Lengths) -> String {
     line
 }
 
-/// How loud the end of a match is.
+/// The level of a match's row in the log, whose sign is that of the verdict.
 pub(super) fn match_level(run: &MatchRun) -> NoticeLevel {
     match run.assessment.verdict {
         Verdict::Good => NoticeLevel::Success,
-        Verdict::Check | Verdict::Poor => NoticeLevel::Warning,
+        Verdict::Check => NoticeLevel::Warning,
+        Verdict::Poor => NoticeLevel::Error,
     }
 }
 

@@ -201,8 +201,9 @@ impl Settings {
         // A file may be named from the folder that the program runs in, or whole.
         let whole = absolute(path);
         self.recent.retain(|known| absolute(known) != whole);
-        self.recent.insert(0, path.to_path_buf());
-        self.opened.insert(path.to_path_buf(), now);
+        // Another run may begin in another folder.
+        self.recent.insert(0, whole.clone());
+        self.opened.insert(whole, now);
         self.trim_recent();
     }
 
@@ -215,7 +216,7 @@ impl Settings {
     /// Remembers as which part a file is used.
     pub fn remember_role(&mut self, source: &PartSource, role: Role) {
         if let PartSource::File(path) = source {
-            self.opened_as.insert(path.clone(), role);
+            self.opened_as.insert(absolute(path), role);
             self.trim_recent();
         }
     }

@@ -7,7 +7,8 @@ use super::view::Scene;
 use super::work::Work;
 use super::{
     Document, FreeWindow, History, InspectState, JobBoard, LogState, MappingState, MatchState,
-    MovingState, PairsState, PartsState, Previews, ProjectState, ReduceState, Settings, ViewState,
+    MovingState, PairsState, PartsState, Previews, ProjectState, Reason, ReduceState, Settings,
+    ViewState,
 };
 use crate::geometry::Similarity;
 
@@ -165,10 +166,20 @@ impl AppState {
 
     /// True while something else than the real pose is drawn.
     pub fn is_preview(&self) -> bool {
-        self.previews.live.is_some()
-            || self.is_as_loaded()
-            || self.shown_start().is_some()
-            || self.previewed_pose().is_some()
+        self.previews.live.is_some() || self.is_chosen_preview()
+    }
+
+    /// True while a preview is chosen that the user can close, unlike the pose of the running match.
+    pub(super) fn is_chosen_preview(&self) -> bool {
+        self.is_as_loaded() || self.shown_start().is_some() || self.previewed_pose().is_some()
+    }
+
+    /// `Ok` unless a start is looked at instead of the pose that would be copied.
+    pub fn shows_its_pose(&self) -> Result<(), Reason> {
+        match self.previews.of_match() {
+            None => Ok(()),
+            Some(_) => Err(Reason("A start is previewed: show the real pose first.")),
+        }
     }
 
     /// True while the stamped part is shown where its file has it, in spite of its pose.

@@ -134,6 +134,19 @@ impl Work<'_> {
         vec![Effect::CancelJob(key)]
     }
 
+    /// Asks the job that holds the inputs to go, else the one that runs.
+    pub fn cancel_present(&mut self) -> Vec<Effect> {
+        if let Some(key) = self.jobs.locking_job() {
+            return self.cancel(key);
+        }
+        let key = self.jobs.running().map(|job| job.key);
+        // What was asked for both parts at once is one work.
+        let both = key
+            .into_iter()
+            .flat_map(|key| [Some(key), key.of_other_part()]);
+        both.flatten().flat_map(|key| self.cancel(key)).collect()
+    }
+
     /// Takes new preferences over.
     pub fn set_settings(&mut self, settings: Settings) -> Vec<Effect> {
         let settings = settings.sanitized();

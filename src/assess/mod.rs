@@ -43,7 +43,7 @@ pub use tolerance::{AssessSettings, ShapeTolerance};
 pub use trims::BorderApart;
 pub use uncertainty::{PartDirection, PoseUncertainty};
 pub use verdict::Verdict;
-pub use words::{beside, error_beside};
+pub use words::{as_well, beside, error_beside};
 
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};

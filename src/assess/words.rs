@@ -84,8 +84,9 @@ impl Reason {
             }
             Self::Shape { difference } => difference.words(lengths),
             Self::NearAlternative { score_ratio, twin } => format!(
-                "{} the part fits nearly as well ({}): check which pose is meant",
+                "{} the part fits {} ({}): check which pose is meant",
                 another_pose(*twin, lengths),
+                as_well(*score_ratio),
                 error_beside(*score_ratio)
             ),
             Self::EqualAlternative {
@@ -93,10 +94,11 @@ impl Reason {
                 twin,
                 n_equivalent,
             } => format!(
-                "ambiguous: {} the part fits equally well ({}); {} in all",
+                "ambiguous: {} the part fits {} ({}); {} in all",
                 another_pose(*twin, lengths),
+                as_well(*score_ratio),
                 error_beside(*score_ratio),
-                counted(*n_equivalent, "equivalent pose")
+                counted(*n_equivalent, "pose")
             ),
             Self::OthersNotSought => {
                 "only the given pose was refined: another one may fit as well".to_owned()
@@ -114,7 +116,7 @@ impl Reason {
                 p95,
                 rivals_sought,
             } => format!(
-                "the parts meet over {} of the smaller one, 95 % of the overlap lies within {}, and {}",
+                "{} of the smaller part lies face to face, 95 % of the overlap lies within {}, and {}",
                 percent(*overlap),
                 lengths.of(*p95),
                 if *rivals_sought {
@@ -132,6 +134,16 @@ pub fn error_beside(score_ratio: f64) -> String {
     match beside(score_ratio) {
         equal if equal == EQUAL => format!("{equal} error"),
         differs => format!("error {differs}"),
+    }
+}
+
+/// How well another pose fits beside the best: "equally well", "nearly as well".
+pub fn as_well(score_ratio: f64) -> &'static str {
+    match score_ratio {
+        // The difference rounds to 0 %.
+        ratio if (ratio - 1.0).abs() < 0.005 => "equally well",
+        ratio if ratio < 1.0 => "at least as well",
+        _ => "nearly as well",
     }
 }
 
@@ -212,7 +224,7 @@ impl ShapeReason {
         match self {
             Self::HardlyMet { share } => {
                 format!(
-                    "the parts meet over {} of the smaller one only",
+                    "only {} of the smaller part lies face to face",
                     percent(*share)
                 )
             }
@@ -498,7 +510,20 @@ fn axis_words(direction: &Vector3) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::error_beside;
+    use super::{as_well, error_beside};
+
+    #[test]
+    fn equally_is_said_only_of_what_rounds_to_no_difference() {
+        for (ratio, words) in [
+            (1.0, "equally well"),
+            (1.004, "equally well"),
+            (0.997, "equally well"),
+            (1.04, "nearly as well"),
+            (0.98, "at least as well"),
+        ] {
+            assert_eq!(as_well(ratio), words);
+        }
+    }
 
     #[test]
     fn ratios_are_read_as_differences_of_the_error() {

@@ -1,6 +1,6 @@
 //! Why a stage of the pipeline has no result.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::project::ProjectError;
 use crate::formats::{Diagnostic, FormatError, SelectionError};
@@ -17,7 +17,7 @@ pub enum PipelineError {
     #[error(transparent)]
     Format(#[from] FormatError),
     /// The chosen part is not there or has no area.
-    #[error("{error}{near}: {path:?}{}", because(.diagnostic))]
+    #[error("{error}{near}: {path:?}{}", because(.path, .diagnostic))]
     Selection {
         /// What is wrong with the choice.
         error: SelectionError,
@@ -161,9 +161,25 @@ pub enum PipelineError {
 }
 
 /// ". The reader found: deck.k:5:7: error: …", if it found anything.
-fn because(diagnostic: &Option<Box<Diagnostic>>) -> String {
-    let words = |diagnostic: &Diagnostic| format!(". The reader found: {diagnostic}");
-    diagnostic.as_deref().map(words).unwrap_or_default()
+/// What the reader found, by its line alone where it stands in the file that is named already.
+fn because(path: &Path, diagnostic: &Option<Box<Diagnostic>>) -> String {
+    let Some(diagnostic) = diagnostic.as_deref() else {
+        return String::new();
+    };
+    match &diagnostic.position {
+        Some(position) if *position.file == *path => {
+            let found = Diagnostic {
+                position: None,
+                ..diagnostic.clone()
+            };
+            let line = match position.line {
+                0 => String::new(),
+                line => format!(" in line {line}"),
+            };
+            format!(". The reader found{line}: {found}")
+        }
+        _ => format!(". The reader found: {diagnostic}"),
+    }
 }
 
 fn names(files: &[PathBuf]) -> String {

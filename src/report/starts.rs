@@ -142,7 +142,7 @@ pub fn few_agree_words(starts: &[StartRecord], n_same: usize) -> Option<String> 
 pub fn outcome_words(outcome: StartOutcome) -> String {
     match outcome {
         StartOutcome::Won => "best".into(),
-        StartOutcome::RunnerUp => "close second".into(),
+        StartOutcome::RunnerUp => "close in the search".into(),
         StartOutcome::MergedInto { start } => format!("merged into start {}", start + 1),
         StartOutcome::Dropped { after } => format!("stopped after {after} iterations"),
         StartOutcome::Failed => "no fit".into(),

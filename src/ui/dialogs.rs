@@ -57,6 +57,8 @@ enum Found {
     NoFile,
     /// The folder is missing.
     NoFolder(PathBuf),
+    /// A folder stands there instead of a file to read.
+    IsFolder,
     /// A folder that is missing could not be made, and why.
     NotMade(String),
 }
@@ -65,7 +67,9 @@ impl Found {
     /// Looks at a path, and makes its folder first if that is wanted.
     fn at(path: &Path, question: &Question, makes_folder: bool) -> Self {
         if question.is_open() {
-            return if path.exists() {
+            return if path.is_dir() {
+                Self::IsFolder
+            } else if path.exists() {
                 Self::Free
             } else {
                 Self::NoFile
@@ -136,6 +140,8 @@ pub struct Dialogs {
     is_asking: bool,
     /// The field for those desktops that have none.
     prompt: Option<Prompt>,
+    /// What was typed into it last for a file to read; the next one begins with it.
+    typed: Option<String>,
     /// Where a file would be overwritten, and which.
     overwrite: Option<(Question, PathBuf, PathBuf)>,
 }
@@ -148,6 +154,7 @@ impl Default for Dialogs {
             receiver,
             is_asking: false,
             prompt: None,
+            typed: None,
             overwrite: None,
         }
     }
@@ -256,8 +263,10 @@ impl Dialogs {
                         None if took < NOT_SHOWN => {
                             let suggestion = question.suggestion();
                             let suggestion = suggestion.map(|path| path.display().to_string());
-                            let prompt = Prompt::new(question, suggestion.unwrap_or_default());
-                            self.prompt = Some(prompt);
+                            // A file that could not be read after all is typed no second time.
+                            let typed = self.typed.clone().filter(|_| question.is_open());
+                            let text = suggestion.or(typed).unwrap_or_default();
+                            self.prompt = Some(Prompt::new(question, text));
                         }
                         None => commands.extend(closed(&question)),
                     }
@@ -289,6 +298,7 @@ impl Dialogs {
                 return None;
             }
             Found::NoFile => format!("{} does not exist.", path.display()),
+            Found::IsFolder => format!("{} is a folder.", path.display()),
             Found::InUse(file) => {
                 let name = file.file_name().unwrap_or_default().to_string_lossy();
                 format!("{name} is one of the files that are read here: choose another name.")
@@ -400,6 +410,9 @@ impl Dialogs {
         match answer {
             Some(PromptAnswer::Complete) => self.complete(prompt.text.clone(), ctx),
             Some(PromptAnswer::Take) if !path.as_os_str().is_empty() => {
+                if prompt.question.is_open() {
+                    self.typed = Some(prompt.text);
+                }
                 return self.check(prompt.question, path, false, ctx);
             }
             Some(PromptAnswer::Create) => {

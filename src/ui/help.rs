@@ -36,7 +36,7 @@ const OTHER_KEYS: [(&str, &[(&str, &str)]); 5] = [
             ("Tab, Shift+Tab", "Next or previous field, tab or 3D window"),
             ("Space, Enter", "Press the button or tab with the frame"),
             ("Alt or F10", "Open the menus; Left, Right: the next one"),
-            ("Esc", "Close the messages"),
+            ("Esc", "Close what is open; then cancel the run"),
         ],
     ),
     (

@@ -36,7 +36,7 @@ const SAY_WHY: [Action; 4] = [
 pub enum KeyOwner {
     /// A question over the window, such as the field for a path.
     Question,
-    /// A menu or another popup.
+    /// A menu or another popup. Keys with Ctrl close it and act.
     Popup,
     /// A text field, perhaps in a dialog. Keys that write nothing still act.
     TextField,
@@ -125,6 +125,10 @@ impl Keyboard {
             };
             self.then = then;
             self.had_dialog = false;
+            if self.owner == KeyOwner::Popup {
+                egui::Popup::close_all(ctx);
+                self.owner = KeyOwner::Window;
+            }
             if matches!(
                 command,
                 Command::View(ViewCommand::SetDialog(Some(Dialog::Palette)))
@@ -190,7 +194,9 @@ fn is_ours(shortcut: Shortcut, action: Action, owner: KeyOwner, has_dialog: bool
         return false;
     }
     match owner {
-        KeyOwner::Question | KeyOwner::Popup => false,
+        KeyOwner::Question => false,
+        // It is closed for them; the other keys walk through it or are typed in it.
+        KeyOwner::Popup => shortcut.ctrl && shortcut.works_in_text(),
         // The field of a dialog leaves Escape to the dialog.
         KeyOwner::TextField => shortcut.works_in_text() || (has_dialog && action == Action::Escape),
         KeyOwner::Window => true,
@@ -319,8 +325,12 @@ mod tests {
         for action in [escape, search, move_over] {
             assert!(is_ours(action, KeyOwner::Window, false));
             assert!(!is_ours(action, KeyOwner::Question, false));
-            assert!(!is_ours(action, KeyOwner::Popup, true));
         }
+        // A menu keeps its own keys and is closed by those with Ctrl.
+        assert!(!is_ours(escape, KeyOwner::Popup, false));
+        assert!(!is_ours(move_over, KeyOwner::Popup, false));
+        assert!(is_ours(search, KeyOwner::Popup, false));
+        assert!(!is_ours(Action::MatchOrStop, KeyOwner::Popup, true));
         assert!(is_ours(search, KeyOwner::TextField, false));
         assert!(!is_ours(escape, KeyOwner::TextField, false));
         assert!(!is_ours(move_over, KeyOwner::TextField, false));

@@ -108,6 +108,8 @@ fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         .max_height(room)
         .min_scrolled_height(room);
     sheet.show(ui, |ui| {
+        // The frames of the widest fields lie beside the edge, not under it.
+        ui.set_max_width(ui.available_width() - 4.0);
         group_title(ui, "Display");
         display_ui(ui, &mut settings);
         map_row(ui, "Deviation colours", &mut settings.signed_map);
@@ -131,8 +133,9 @@ fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         });
         let refused = form_row(ui, "Read limit", LABEL, |ui| {
             let takes = Takes::number("Read limit", " GiB", Settings::READ_LIMITS);
+            let before = settings.read_limit;
             let field = takes.field(&mut settings.read_limit).speed(0.1);
-            let (field, refused) = told_field(ui, "Read limit", field, |text| takes.read(text));
+            let (field, refused) = told_field(ui, "Read limit", before, field, |text| takes.read(text));
             field.on_hover_text(
                 "Largest file that is read, unpacked and with all its included files. Reload a file \
                  after raising it.",

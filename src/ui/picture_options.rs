@@ -77,8 +77,9 @@ fn size_ui(ui: &mut Ui, choice: &mut PictureChoice) {
             {
                 let (least, most) = (*PictureSize::SIDES.start(), *PictureSize::SIDES.end());
                 let takes = Takes::count(name, least as usize..=most as usize);
+                let before = f64::from(*side);
                 let field = takes.field(side).speed(8.0);
-                let told = told_field(ui, name, field, |text| takes.read(text));
+                let told = told_field(ui, name, before, field, |text| takes.read(text));
                 refused = refused.take().or(told.1);
             }
             caption(ui, "pixels");

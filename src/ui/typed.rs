@@ -67,6 +67,7 @@ impl<'a> Takes<'a> {
         match value {
             Some(value) if self.range.contains(&value) => Ok(value),
             Some(_) => Err(format!("{}: {}.", self.name, self.range_words())),
+            None if text.trim().is_empty() => Err(format!("Enter a {what}.")),
             None => Err(format!("“{}” is not a {what}.", text.trim())),
         }
     }
@@ -105,11 +106,20 @@ fn bound(value: f64) -> String {
     }
 }
 
-/// Adds a field that is read when it is left: a text that `read` refuses changes nothing and frames the field
-/// until another is typed. With the response comes why the text was refused.
+/// Why a text was refused, and the value that the field had then.
+#[derive(Debug, Clone, PartialEq)]
+struct Refused {
+    why: String,
+    at: f64,
+}
+
+/// Adds a field of a value that is read when it is left: a text that `read` refuses changes nothing and frames the
+/// field until it is edited again, the value changes, or Escape is pressed. With the response comes why the text
+/// was refused.
 pub fn told_field(
     ui: &mut Ui,
     name: &str,
+    value: f64,
     field: DragValue<'_>,
     read: impl Fn(&str) -> Result<f64, String>,
 ) -> (Response, Option<String>) {
@@ -123,10 +133,14 @@ pub fn told_field(
     // A field with a unit is named after the unit otherwise.
     let response = ui.add(field).accessible_name(name);
     let id = response.id.with("refused");
-    let known: Option<String> = ui.data(|data| data.get_temp(id)).flatten();
+    let known: Option<Refused> = ui.data(|data| data.get_temp(id)).flatten();
+    let is_over = response.has_focus()
+        || response.changed()
+        || ui.input(|input| input.key_pressed(egui::Key::Escape))
+        || known.as_ref().is_some_and(|known| known.at != value);
     let now = match refused.take() {
-        Some(now) => now,
-        None if response.gained_focus() || response.changed() => None,
+        Some(why) => why.map(|why| Refused { why, at: value }),
+        None if is_over => None,
         None => known.clone(),
     };
     if now != known {
@@ -137,7 +151,7 @@ pub fn told_field(
         let inside = egui::StrokeKind::Inside;
         ui.painter().rect_stroke(response.rect, 4.0, frame, inside);
     }
-    (response, now)
+    (response, now.map(|now| now.why))
 }
 
 /// Why a text was refused, below its field.
@@ -168,6 +182,7 @@ mod tests {
             (&angle, "12,5 °", Ok(12.5)),
             (&angle, "0", Err("Rotation step: 1 to 60°.")),
             (&angle, "steep", Err("“steep” is not a number.")),
+            (&angle, " ", Err("Enter a number.")),
             (&reach, "0", Err("Largest distance: above 0 mm.")),
             (&floor, "0,2 cm", Ok(2.0)),
             (&floor, "-1", Err("Floor: 0 mm or more.")),

@@ -101,6 +101,21 @@ pub fn action_button(
     button: (&str, Look, Vec2),
     commands: &mut Vec<Command>,
 ) -> Response {
+    let response = told_button(ui, state, action, button, &action_tooltip(action));
+    if response.clicked() {
+        commands.extend(action.command(state));
+    }
+    response
+}
+
+/// A button that looks like that of an action, with a tooltip of its own; what a click does is left to the caller.
+pub fn told_button(
+    ui: &mut Ui,
+    state: &AppState,
+    action: Action,
+    button: (&str, Look, Vec2),
+    tooltip: &str,
+) -> Response {
     let (label, look, size) = button;
     let palette = Palette::of(ui);
     let enabled = action.enabled(state);
@@ -117,16 +132,10 @@ pub fn action_button(
         button = button.fill(palette.accent);
     }
     let response = ui.add_enabled(enabled.is_ok(), button);
-    let response = match enabled {
-        Ok(()) => response.on_hover_text(action_tooltip(action)),
-        Err(reason) => {
-            response.on_disabled_hover_text(format!("{}\n{reason}", action_tooltip(action)))
-        }
-    };
-    if response.clicked() {
-        commands.extend(action.command(state));
+    match enabled {
+        Ok(()) => response.on_hover_text(tooltip),
+        Err(reason) => response.on_disabled_hover_text(format!("{tooltip}\n{reason}")),
     }
-    response
 }
 
 /// [`action_button`] over the whole width of a column.

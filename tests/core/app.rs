@@ -213,6 +213,17 @@ impl Window {
         }
     }
 
+    /// Closes every toast, so that Escape finds none.
+    pub fn close_toasts(&mut self) {
+        loop {
+            let next = self.state.log.notices.toasts().next();
+            let Some(id) = next.map(|notice| notice.id) else {
+                return;
+            };
+            self.apply(NoticeCommand::Dismiss(id));
+        }
+    }
+
     pub fn submit(&mut self, kind: JobKind, stamp: Stamp) {
         self.n_jobs += 1;
         let id = JobId(self.n_jobs);
@@ -798,6 +809,7 @@ fn a_move_by_keys_ends_before_what_it_stands_on_changes() {
     let (mut window, before) = begun();
     window.holds = true;
     window.act(Action::MatchOrStop);
+    window.close_toasts();
     window.apply(Command::Escape);
     assert!(window.state.moving.tool.is_none());
     assert_eq!(window.state.document.pose, before.pose);
@@ -839,6 +851,13 @@ fn a_match_is_one_step_and_its_alternatives_are_one_key_away() {
         window.act(Action::NextAlternative);
         assert_eq!(window.pose(), shifted(x));
         assert!(window.state.document.current_result().is_some());
+        let row = &window.state.stamped_rows()[0];
+        let number = match row.state {
+            StampedState::Alternative(_, number) => number,
+            StampedState::Matched(..) => 1,
+            _ => 0,
+        };
+        assert_eq!(number as f64, x, "section 4 names the pose");
     }
     window.apply(MoveCommand::Flip(Axis::X));
     assert!(window.state.stale(Section::Match).is_some());
@@ -923,13 +942,16 @@ fn recent_files_of_one_name_are_told_apart_by_folder_and_part() {
     let mut window = Window::with_both();
     let role = |window: &Window, name: &str| {
         let roles = &window.state.settings.opened_as;
-        roles.get(Path::new(name)).copied()
+        roles.get(&std::path::absolute(name).unwrap()).copied()
     };
     assert_eq!(role(&window, "crash.k"), Some(Role::Crash));
     assert_eq!(role(&window, "stamped.k"), Some(Role::Stamped));
     window.act(Action::Swap);
     assert_eq!(role(&window, "crash.k"), Some(Role::Stamped));
-    window.apply(FileCommand::ForgetRecent(PathBuf::from("crash.k")));
+    // A file that was named from the folder that the program runs in is found from any other.
+    let crash = std::path::absolute("crash.k").unwrap();
+    assert!(window.state.settings.recent.contains(&crash));
+    window.apply(FileCommand::ForgetRecent(crash));
     assert_eq!(role(&window, "crash.k"), None);
 }
 
@@ -1085,11 +1107,32 @@ fn while_a_match_runs_inputs_are_locked_and_cancel_restores() {
     };
     window.apply(Command::Live(Box::new(live)));
     assert_eq!(window.state.shown_pose(), shifted(5.0));
+    assert_eq!(
+        window.state.can_map(),
+        Err(Reason("A match is running.")),
+        "none need be begun"
+    );
+    // A message, and windows without panels, are closed before the run is given up.
+    window.close_toasts();
+    let running = "A match is running.";
+    window.apply(NoticeCommand::Tell(NoticeLevel::Note, running.into()));
+    assert_eq!(toasts(&window.state), [running]);
+    window.act(Action::ToggleGraphicsOnly);
+    for _ in 0..2 {
+        window.apply(Command::Escape);
+        assert!(window.state.jobs.is_active(JobKey::Match));
+        assert_eq!(window.state.shown_pose(), shifted(5.0));
+    }
+    assert!(toasts(&window.state).is_empty());
+    assert!(!window.state.view.is_graphics_only);
     window.apply(Command::Escape);
     assert_eq!(window.state.shown_pose(), Similarity::identity());
     assert_eq!(window.state.document, before);
     assert!(!window.state.jobs.is_busy());
     assert_eq!(window.state.match_starts().len(), 1);
+    let mut kept = window.state.log.notices.kept();
+    let told = kept.find(|notice| notice.text == running);
+    assert!(told.is_some_and(|notice| !notice.is_unread), "it is over");
 }
 
 #[test]
@@ -1800,6 +1843,7 @@ fn escape_ends_the_reduction_of_both_parts() {
     // The worker has begun with the first.
     let (key, stamp) = jobs[0];
     window.tell(JobId(1), key, stamp, JobStage::Started);
+    window.close_toasts();
     let ended: Vec<JobKey> = window
         .state
         .apply(Command::Escape)

@@ -570,6 +570,7 @@ fn the_list_tells_what_is_read_matched_and_wrong() {
     assert!(Action::MapOrCancel.enabled(&window.state).is_err());
     assert!(window.state.document.map_command_line().is_none());
     // Esc gives the match up, which is not begun anew by itself.
+    window.close_toasts();
     window.apply(Command::Escape);
     assert!(window.held.is_empty());
     assert_eq!(states(&window)[1], StampedState::NotMatched(None));

@@ -131,7 +131,7 @@ fn an_ambiguous_pose_is_told_from_the_pose_that_is_shown() {
     let of_best = ambiguous(&window);
     let evidence = &of_best.evidence;
     assert!(
-        evidence.contains("almost as well (error 2 % higher)"),
+        evidence.contains("nearly as well (error 2 % higher)"),
         "{evidence}"
     );
     window.act(Action::NextAlternative);

@@ -352,6 +352,23 @@ fn cards_go_to_the_clipboard_with_what_rounding_costs() {
 }
 
 #[test]
+fn cards_of_a_poor_pose_say_that_it_is_poor() {
+    let run = &matched().run;
+    let mut poor = MatchRun::clone(run);
+    poor.assessment = Arc::new(shapematch::assess::Assessment {
+        verdict: shapematch::assess::Verdict::Poor,
+        ..shapematch::assess::Assessment::clone(&run.assessment)
+    });
+    let input = OutputInput {
+        run: Some(Arc::new(poor)),
+        ..matched().input()
+    };
+    let output = Output::Cards(CardForm::StampedPart);
+    let made = output.make(&input, None, &Monitor::silent()).unwrap();
+    assert!(made.notes[1].contains("POOR"), "{:?}", made.notes);
+}
+
+#[test]
 fn an_alternative_is_measured_anew_before_it_is_written() {
     let mut run = MatchRun::clone(&matched().run);
     let mut outcome = shapematch::registration::MatchOutcome::clone(&run.outcome);

@@ -54,6 +54,18 @@ fn the_deviation_is_measured_when_something_shows_it_and_follows_quick_moves() {
 }
 
 #[test]
+fn the_deviation_follows_to_another_pose_of_the_match() {
+    let mut window = with_map();
+    window.act(Action::MatchOrStop);
+    let of_best = window.state.deviation_stats().unwrap().1.rms;
+    window.act(Action::NextAlternative);
+    assert_eq!(window.state.freshness(), Freshness::Current);
+    let comparison = window.state.comparison().unwrap();
+    assert_eq!(comparison.crash_from_stamped, window.pose());
+    assert_ne!(window.state.deviation_stats().unwrap().1.rms, of_best);
+}
+
+#[test]
 fn a_slow_deviation_is_out_of_date_until_it_is_asked_for() {
     let mut window = with_map();
     as_if_it_took(&mut window, Duration::from_secs(20));

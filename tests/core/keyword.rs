@@ -488,7 +488,7 @@ fn selections_choose_what_they_name() {
         ),
         (
             Selection::NodeSet(1),
-            "the selection holds no shell or solid with area",
+            "there is no shell or solid with area",
         ),
     ];
     for (selection, message) in refused {

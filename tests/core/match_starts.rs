@@ -221,10 +221,13 @@ fn a_preview_shows_any_iteration_and_changes_nothing() {
     assert_eq!(window.state.shown_pose(), window.pose());
     window.apply(PreviewCommand::Pin(Some(Preview::Start(start))));
     assert_eq!(window.state.shown_pose(), outcome.starts[start].last);
+    // The matrix of another pose than the one that is seen is not copied by mistake.
+    assert!(Action::CopyMatrix.enabled(&window.state).is_err());
     assert_eq!(window.state.document, before);
     assert_eq!(window.state.history.n_done(), n_steps);
     window.act(Action::Escape);
     assert!(!window.state.is_preview());
+    assert_eq!(Action::CopyMatrix.enabled(&window.state), Ok(()));
 }
 
 #[test]

@@ -157,6 +157,14 @@ fn escape_closes_what_is_open_and_nothing_else() {
     window.run_steps(2);
     assert!(!egui::Popup::is_any_open(&window.ctx));
     assert_eq!(n_selected(&window), 1, "the menu's key went to the window");
+    // A key with Ctrl is no menu's: it acts, and the menu goes.
+    click(&mut window, "View");
+    window.key_press_modifiers(Modifiers::COMMAND, Key::B);
+    window.run_steps(2);
+    assert!(!egui::Popup::is_any_open(&window.ctx));
+    assert!(window.state().state().view.is_column_folded());
+    window.key_press_modifiers(Modifiers::COMMAND, Key::B);
+    window.run_steps(2);
     // A text field.
     click(&mut window, "Move by hand");
     window.get_by_label("Matrix to paste").focus();

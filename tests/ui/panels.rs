@@ -20,12 +20,15 @@ fn an_empty_window_invites_and_says_why_the_rest_waits() {
     for name in [
         "Drop the crash model here",
         "Drop the stamped part here",
-        "Open crash model…",
-        "Open stamped part…",
         "Load a part first.",
         "Load both parts first.",
     ] {
         assert!(window.query_by_label(name).is_some(), "{name}");
+    }
+    // One command has one name, in the windows and in the column.
+    for action in [Action::OpenCrash, Action::OpenStamped] {
+        let name = action.row().label;
+        assert_eq!(window.query_all_by_label(name).count(), 2, "{name}");
     }
 }
 

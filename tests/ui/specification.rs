@@ -268,6 +268,23 @@ fn a_further_file_that_is_dropped_during_a_match_is_added_after_it() {
     assert!(placing.crash_from_stamped != Similarity::identity());
 }
 
+/// The section with Stop and Cancel may be folded, and the whole column too.
+#[test]
+fn a_run_can_be_given_up_while_the_left_column_is_folded() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    let fold = action(&window, Action::ToggleColumn);
+    act(&mut window, fold);
+    let run = action(&window, Action::MatchOrStop);
+    act(&mut window, run);
+    click(&mut window, "Cancel the run");
+    assert!(window.state().state().jobs.locking_job().is_none());
+    finish(&mut window);
+    assert!(window.state().state().document.result.is_none());
+    assert!(window.query_by_label("Cancel the run").is_none());
+}
+
 fn stamped_names(window: &Window) -> Vec<String> {
     let rows = window.state().state().stamped_rows();
     rows.into_iter().map(|row| row.name).collect()

@@ -2,7 +2,7 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use shapematch::app::{Command, MatchCommand, ViewCommand};
+use shapematch::app::{Command, MatchCommand, Settings, ViewCommand};
 use shapematch::mapping::MapOptions;
 use shapematch::registration::{Floor, MatchSettings, Method, Selection};
 use shapematch::role::Role;
@@ -230,4 +230,46 @@ fn a_tolerance_that_is_none_is_refused_beside_the_verdict() {
     let result = window.state().state().document.current_result();
     let judged = result.and_then(|result| result.run.assessment.shape.as_ref());
     assert_eq!(judged.map(|shape| shape.tolerance.remainder), Some(2.0));
+}
+
+#[test]
+fn a_refusal_goes_when_the_field_is_edited_or_its_value_changes() {
+    let mut window = matched();
+    click(&mut window, "2 Reduce");
+    window.run_steps(4);
+    let why = "“a few” is not a whole number.";
+    let is_told = |window: &Window| window.query_by_label(why).is_some();
+    let refuse = |window: &mut Window| {
+        type_into(window, "Max triangles", "a few");
+        assert!(is_told(window));
+    };
+    let role = egui::accesskit::Role::SpinButton;
+    refuse(&mut window);
+    window.get_by_role_and_label(role, "Max triangles").click();
+    window.run_steps(2);
+    assert!(!is_told(&window), "it is edited again");
+    window.key_press(egui::Key::Escape);
+    window.run_steps(2);
+
+    refuse(&mut window);
+    window.key_press(egui::Key::Escape);
+    window.run_steps(2);
+    assert!(!is_told(&window), "Escape");
+
+    refuse(&mut window);
+    let settings = Settings {
+        max_triangles: 700,
+        ..window.state().state().settings.clone()
+    };
+    run(&mut window, Command::Settings(Box::new(settings)));
+    assert!(!is_told(&window), "another value");
+
+    window.get_by_role_and_label(role, "Max triangles").click();
+    window.run_steps(2);
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    window.key_press(egui::Key::Backspace);
+    window.run_steps(2);
+    window.key_press(egui::Key::Enter);
+    window.run_steps(2);
+    assert!(window.query_by_label("Enter a whole number.").is_some());
 }

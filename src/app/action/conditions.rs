@@ -44,6 +44,11 @@ pub(super) fn has_stamped(state: &AppState) -> Result<(), Reason> {
     state.document.has_part(Role::Stamped)
 }
 
+pub(super) fn shows_its_pose(state: &AppState) -> Result<(), Reason> {
+    state.document.has_part(Role::Stamped)?;
+    state.shows_its_pose()
+}
+
 pub(super) fn has_selection(state: &AppState) -> Result<(), Reason> {
     require(!state.parts.selected.is_empty(), "Select a part first.")
 }

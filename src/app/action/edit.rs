@@ -51,7 +51,7 @@ const HISTORY: &[ActionRow] = &[
     ActionRow {
         action: Action::Escape,
         label: "Cancel tool",
-        tooltip: "End the present tool, preview or run",
+        tooltip: "Close what is open; then cancel the run",
         keys: Keys::press(&[Shortcut::plain(Key::Escape)]),
         enabled: always,
         command: |_| Some(Command::Escape),

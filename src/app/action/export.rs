@@ -1,6 +1,6 @@
 //! The menu *Export*: what leaves the program.
 
-use super::conditions::{always, has_result, has_stamped, has_valid_mapping};
+use super::conditions::{always, has_result, has_stamped, has_valid_mapping, shows_its_pose};
 use super::row::keys::{ctrl_shift, function};
 use super::row::some;
 use super::{Action, ActionRow, Key, Keys, MenuGroup, Shortcut, toggled_dialog};
@@ -22,7 +22,7 @@ const COPY: &[ActionRow] = &[
         label: "Copy matrix",
         tooltip: "Copy the pose (stamped → crash) in the form used last",
         keys: Keys::press(&[ctrl_shift('C')]),
-        enabled: has_stamped,
+        enabled: shows_its_pose,
         command: |state| some(ExportCommand::Copy(state.copy_form())),
     },
     ActionRow {

@@ -52,9 +52,10 @@ impl CopyForm {
     /// `Ok` if it can be copied now: cards need a match.
     pub fn enabled(self, state: &AppState) -> Result<(), Reason> {
         match self {
-            Self::Matrix(_) => state.document.has_part(Role::Stamped),
-            Self::Cards(_) => state.document.has_result(),
+            Self::Matrix(_) => state.document.has_part(Role::Stamped)?,
+            Self::Cards(_) => state.document.has_result()?,
         }
+        state.shows_its_pose()
     }
 }
 

@@ -183,8 +183,9 @@ impl AppState {
             return Ok(());
         }
         self.document.can_map()?;
-        self.document.has_pose_to_map_at()?;
-        self.jobs.is_unlocked()
+        // During the first match there is none yet, but it need not be begun.
+        self.jobs.is_unlocked()?;
+        self.document.has_pose_to_map_at()
     }
 
     /// `Ok` if a mapping of a part that was neither matched nor moved may start.

@@ -49,6 +49,8 @@ pub enum StampedState {
     NotMatched(Option<String>),
     /// It was matched; the verdict and the match in a line.
     Matched(Verdict, String),
+    /// The first one lies at another pose of its match; the verdict and the number of the pose, from 1.
+    Alternative(Verdict, usize),
     /// It lies as the first one.
     AsFirst,
     /// The first one lies where it was put by hand.
@@ -119,10 +121,13 @@ impl AppState {
 
     fn first_state(&self) -> StampedState {
         match self.document.current_result() {
-            Some(result) if result.alternative.is_none() => {
-                let verdict = result.run.assessment.verdict;
-                StampedState::Matched(verdict, facts::match_line(&result.run, self.lengths()))
-            }
+            Some(result) => match result.alternative {
+                None => {
+                    let line = facts::match_line(&result.run, self.lengths());
+                    StampedState::Matched(result.verdict(), line)
+                }
+                Some(index) => StampedState::Alternative(result.verdict(), index + 2),
+            },
             _ if self.document.has_pose() => StampedState::ByHand,
             _ => StampedState::AsLoaded,
         }

@@ -5,7 +5,9 @@ use crate::app::{
     Action, AppState, BottomTab, Command, FileCommand, MatchCommand, MatchResult, PartCommand,
     ViewCommand,
 };
-use crate::assess::{Assessment, Clarity, Reason, ShapeReason, Twin, Verdict, error_beside};
+use crate::assess::{
+    Assessment, Clarity, Reason, ShapeReason, Twin, Verdict, as_well, error_beside,
+};
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::registration::{Hand, Method, StartMethod};
 use crate::role::Role;
@@ -232,11 +234,7 @@ impl AppState {
             (ambiguity.twin, ambiguity.ratio.unwrap_or(1.0), remedy)
         };
         let how = twin.map(|twin| twin.words(self.lengths()));
-        let well = if ratio < 1.0 {
-            "at least as well"
-        } else {
-            "almost as well"
-        };
+        let well = as_well(ratio);
         Some(Cause {
             title: "Ambiguous pose".to_owned(),
             evidence: format!(

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::MatchState;
 use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
-use crate::app::{Effect, LogStep, MatchResult, facts};
+use crate::app::{Effect, LogStep, MatchResult, NoticeLevel, facts};
 use crate::geometry::Similarity;
 use crate::jobs::Stamp;
 use crate::pipeline::match_parts::MatchRun;
@@ -43,7 +43,8 @@ impl MatchState {
             .push(level, LogStep::Result, None, line.clone(), None);
         work.follow(FollowUp::Matched {
             before,
-            level,
+            // What was found is no failure: its message goes with the result.
+            level: level.min(NoticeLevel::Warning),
             line: line.clone(),
         });
         if took >= LONG_RUN {

@@ -70,7 +70,7 @@ pub enum SelectionError {
         id: u64,
     },
     /// The chosen elements have no triangle with area.
-    #[error("the selection holds no shell or solid with area")]
+    #[error("there is no shell or solid with area")]
     Empty,
     /// The triangles make no mesh.
     #[error("the surface cannot be built: {0}")]

@@ -22,7 +22,7 @@ use crate::report::html::{
 };
 use crate::report::picture::{Paint, Picture, PictureMesh, picture};
 use crate::role::PerRole;
-use crate::text::{Lengths, factor_note, fixed, grouped, length, millis, percent, signed};
+use crate::text::{Lengths, factor_note, fixed, grouped, length, millis, percent, share, signed};
 
 /// Pixels of a picture.
 const SIZE: [usize; 2] = [560, 380];
@@ -66,7 +66,7 @@ pub fn map_report(
                 [
                     row.status.label().to_owned(),
                     grouped(row.n_elements),
-                    percent(row.area_share),
+                    share(row.area_share),
                 ]
             })
             .collect(),
@@ -507,7 +507,7 @@ impl<'a> Painter<'a> {
         let png = drawn.to_png();
         let shares = givers(self.run, self.monitor)?;
         let row =
-            |name: String, n_elements: usize, area: f64| [name, grouped(n_elements), percent(area)];
+            |name: String, n_elements: usize, area: f64| [name, grouped(n_elements), share(area)];
         let named = record.stamped.iter().zip(&shares).enumerate();
         let mut rows: Vec<(String, [String; 3])> = named
             .map(|(file, (stamped, share))| {

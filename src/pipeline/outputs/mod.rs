@@ -12,6 +12,7 @@ use super::map::{MapRun, OtherResult, WriteKind, elements_path};
 use super::match_parts::{MatchRun, with_alternative};
 use super::units::PairUnits;
 use super::write_file::write_file_unless_cancelled;
+use crate::assess::Verdict;
 use crate::formats::Format;
 use crate::geometry::{Similarity, TriMesh};
 use crate::monitor::Monitor;
@@ -373,7 +374,13 @@ impl Output {
                 let unit = Lengths::new(PairUnits::of(parts.map(Some)).lengths).suffix();
                 let note =
                     format!("read back: rounding moves no node by more than {error:.1e}{unit}");
-                (cards.text, vec![note])
+                let verdict = run.assessment.verdict;
+                let warning = (verdict == Verdict::Poor).then(|| {
+                    let advice = verdict.advice().trim_end_matches('.').to_lowercase();
+                    format!("the pose is {}: {advice}", verdict.label())
+                });
+                let notes = std::iter::once(note).chain(warning).collect();
+                (cards.text, notes)
             }
             Self::Mesh(mesh) => {
                 let format = format.ok_or(PipelineError::Lacks("a mesh format"))?;

@@ -249,7 +249,7 @@ impl Report<'_> {
                 (chart)
                 ul.legend {
                     li { i.line style="border-color:var(--stamped)" {} "best start" }
-                    li { i.line style="border-color:var(--crash);border-top-style:dashed" {} "close seconds" }
+                    li { i.line style="border-color:var(--crash);border-top-style:dashed" {} "close in the search" }
                     li { i.line style="border-color:var(--faint)" {} "dropped" }
                 }
             }

@@ -95,7 +95,13 @@ fn a_folder_is_made_only_when_that_is_asked_for() {
     let none = folder.path().join("none.k");
     dialogs.check(Question::Open(Role::Crash), none, false, &ctx);
     assert!(wait(&mut dialogs, &ctx).is_empty());
-    assert_eq!(dialogs.prompt.unwrap().missing, None);
+    assert_eq!(dialogs.prompt.take().unwrap().missing, None);
+    let question = Question::Open(Role::Crash);
+    dialogs.check(question, folder.path().to_owned(), false, &ctx);
+    assert!(wait(&mut dialogs, &ctx).is_empty());
+    let prompt = dialogs.prompt.unwrap();
+    assert!(prompt.note.unwrap().ends_with("is a folder."));
+    assert_eq!(prompt.text, folder.path().display().to_string());
 }
 
 #[test]

@@ -259,7 +259,7 @@ fn loading_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Comm
     ui.add(egui::Label::new(RichText::new(job.words()).color(Palette::of(ui).secondary)).wrap());
     ui.add_space(UNIT);
     if ui.button("Cancel loading").clicked() {
-        commands.push(Command::Escape);
+        commands.push(Command::CancelPresent);
     }
 }
 
@@ -295,10 +295,10 @@ fn invitation_ui(
         Look::Plain
     };
     let is_narrow = width < 160.0;
-    let name = match role {
-        _ if is_narrow => "Open…",
-        Role::Crash => "Open crash model…",
-        Role::Stamped => "Open stamped part…",
+    let name = if is_narrow {
+        "Open…"
+    } else {
+        action.row().label
     };
     action_button(ui, state, action, (name, look, vec2(width, TALL)), commands);
     if role == Role::Crash && is_empty {

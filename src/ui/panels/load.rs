@@ -66,15 +66,16 @@ fn file_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Command
         match state.document.part(role) {
             Some(part) => loaded_ui(ui, role, part, state, commands),
             None => {
-                let (text, action) = match role {
-                    Role::Crash => ("Open crash…", Action::OpenCrash),
-                    Role::Stamped => ("Open stamped…", Action::OpenStamped),
+                let action = match role {
+                    Role::Crash => Action::OpenCrash,
+                    Role::Stamped => Action::OpenStamped,
                 };
                 if state.jobs.is_active(JobKey::Load(role)) {
                     caption(ui, format!("Loading the {} part…", role.word()));
                 } else {
                     let size = vec2(ui.available_width(), ROW);
-                    action_button(ui, state, action, (text, Look::Plain, size), commands);
+                    let look = (action.row().label, Look::Plain, size);
+                    action_button(ui, state, action, look, commands);
                 }
             }
         }

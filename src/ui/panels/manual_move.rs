@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{CollapsingHeader, Color32, Key, Modifiers, TextStyle, Ui, vec2};
+use egui::{Align, CollapsingHeader, Color32, Key, Layout, Modifiers, TextStyle, Ui, vec2};
 
 use crate::app::{
     Action, AppState, Axis, AxisFrame, Command, MoveCommand, turns_deg, with_turns_deg,
@@ -89,13 +89,14 @@ fn steps_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             } else {
                 (Takes::length(name, state.lengths(), MOVES), 0.5)
             };
+            let before = value;
             let field = takes
                 .field(&mut value)
                 .speed(speed)
                 .max_decimals(6)
                 .min_size(vec2(68.0, ROW));
             let spoken = format!("{name} by");
-            let (_, refused) = told_field(ui, &spoken, field, |text| takes.read(text));
+            let (_, refused) = told_field(ui, &spoken, before, field, |text| takes.read(text));
             for axis in Axis::ALL {
                 let label = format!("{} {}", if value < 0.0 { "−" } else { "+" }, axis.letter());
                 let spoken = format!("{name} by {value}{unit} on {}", axis.letter());
@@ -159,6 +160,7 @@ fn position_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let moved: [f64; 3] = (center - pivot).into();
     let lengths = state.lengths();
     let unit = lengths.suffix();
+    heading_ui(ui, unit);
     for (name, what, values) in [
         ("Centre", "Centre", at),
         ("Translation", "Translation since loading,", moved),
@@ -195,6 +197,30 @@ fn position_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
+/// The axes over the three columns, and beside them the units of what stands in these.
+fn heading_ui(ui: &mut Ui, unit: &str) {
+    let units = match unit.trim() {
+        "" => "°".to_owned(),
+        unit => format!("{unit}, °"),
+    };
+    form_row(ui, &units, LABEL, |ui| {
+        tighten(ui);
+        let width = column_width(ui);
+        for axis in Axis::ALL {
+            let size = vec2(width, ui.text_style_height(&TextStyle::Small));
+            ui.allocate_ui_with_layout(size, Layout::top_down(Align::Center), |ui| {
+                ui.set_width(width);
+                caption(ui, axis.letter().to_string());
+            });
+        }
+    });
+}
+
+/// Width of one of three fields in a row.
+fn column_width(ui: &Ui) -> f32 {
+    (ui.available_width() - 8.0) / 3.0
+}
+
 fn set_pose(crash_from_stamped: Similarity, name: String) -> Command {
     MoveCommand::SetPose {
         crash_from_stamped,
@@ -216,7 +242,7 @@ fn fields_ui(
     form_row(ui, label, LABEL, |ui| {
         tighten(ui);
         ui.style_mut().drag_value_text_style = TextStyle::Small;
-        let width = (ui.available_width() - 8.0) / 3.0;
+        let width = column_width(ui);
         // As wide while it is typed in.
         ui.spacing_mut().interact_size.x = width;
         for axis in Axis::ALL {
@@ -233,7 +259,7 @@ fn fields_ui(
                 .fixed_decimals(decimals)
                 .speed(0.5)
                 .min_size(vec2(width, ROW));
-            let (response, why) = told_field(ui, &name, field, |text| takes.read(text));
+            let (response, why) = told_field(ui, &name, before, field, |text| takes.read(text));
             refused = refused.take().or(why);
             // A field that was only looked into holds the value as it is shown.
             let is_other = fixed(value, decimals) != fixed(before, decimals);

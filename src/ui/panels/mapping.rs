@@ -17,7 +17,7 @@ use crate::pipeline::forming_values::LayerChoice;
 use crate::pipeline::map::{MapRecord, PairRecord, PoseOrigin};
 use crate::role::Role;
 use crate::settings::{MAP_SETTINGS, Setting};
-use crate::text::{Lengths, fixed, grouped, length, percent, sentence};
+use crate::text::{Lengths, fixed, grouped, length, percent, sentence, share};
 use crate::ui::theme::{Palette, ROW, TALL};
 use crate::ui::widgets::{
     Look, action_button, caption, card, chip, paragraph, plain_action, secondary, wide_action,
@@ -372,7 +372,7 @@ fn lines(record: &MapRecord, lengths: Lengths) -> Vec<String> {
             "{} {} ({})",
             grouped(row.n_elements),
             row.status.label(),
-            percent(row.area_share)
+            share(row.area_share)
         ));
     }
     let mean = |name: &str, pair: &Option<PairRecord>, unit: &str| {

@@ -75,12 +75,13 @@ fn ceiling_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut refused = None;
     form_row(ui, "Max triangles", LABEL, |ui| {
         let takes = Takes::count("Max triangles", MAX_TRIANGLES);
+        let before = settings.max_triangles as f64;
         let field = takes
             .field(&mut settings.max_triangles)
             .speed(20.0)
             .custom_formatter(|n, _| grouped(n as usize))
             .min_size(vec2((ui.available_width() - CHOICE).clamp(56.0, 98.0), ROW));
-        let (field, why) = told_field(ui, "Max triangles", field, |text| takes.read(text));
+        let (field, why) = told_field(ui, "Max triangles", before, field, |text| takes.read(text));
         ui.spacing_mut().button_padding.x = 8.0;
         let is_left = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         is_entered = is_left && why.is_none();

@@ -1,35 +1,43 @@
 //! The verdict card and the matrix.
 
-use egui::{Button, RichText, Ui, vec2};
+use egui::{Button, Event, RichText, Ui, vec2};
 
 use super::explain;
+use super::section::unfolded;
 use crate::app::{Action, AppState, Command, ExportCommand, MatchCommand, MatchResult, Section};
-use crate::assess::{Ambiguity, Coverage, OneSided};
+use crate::assess::{Ambiguity, Coverage, OneSided, Reason};
+use crate::jobs::{JobKey, Stamp};
 use crate::registration::{group_starts, limits};
 use crate::report::distances::{OVERLAP_HELP, OVERLAP_SPREAD};
 use crate::report::{PoseRecord, few_agree_words, number, start_counts};
-use crate::role::PerRole;
+use crate::role::{PerRole, Role};
 use crate::settings::setting;
 use crate::text::{capital, fixed, sentence, vector, whole_percent};
+use crate::ui::panels::mapping::STALE;
 use crate::ui::panels::top_bar::copy_forms_ui;
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::typed::{Takes, refusal, told_field};
 use crate::ui::widgets::{
-    Look, action_button, caption, card, chip, figure, figure_fits, paragraph, percent,
-    plain_action, square, tight, verdict_color,
+    Look, action_tooltip, caption, card, chip, figure, figure_fits, paragraph, percent,
+    plain_action, square, tight, told_button, verdict_color,
 };
 
 /// Verdict, figures, alternatives, matrix.
 pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     explain::failure_ui(ui, state, commands);
+    let top = ui.cursor().top();
     let Some(result) = &state.document.result else {
+        InSight::keep(ui, state, top);
         return;
     };
     ui.add_space(2.0);
-    let top = ui.cursor().top();
     let held = HeldHeight::read(ui);
     card(ui, |ui| {
         let first = ui.cursor().top();
+        if state.previews.of_match().is_some() {
+            // The figures are those of the result, not of the pose that is looked at.
+            ui.multiply_opacity(STALE);
+        }
         if state.document.current_result().is_some() {
             verdict_ui(ui, state, result, commands);
             if !state.is_unit_in_doubt() {
@@ -42,24 +50,78 @@ pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
         held.hold(ui, first);
     });
-    // A new result comes into sight by itself.
-    let id = egui::Id::unique("stamp of the result in sight");
-    let seen: Option<crate::jobs::Stamp> = ui.data(|data| data.get_temp(id));
-    if seen != Some(result.stamp) {
-        ui.data_mut(|data| data.insert_temp(id, result.stamp));
-        // Of a card that is higher than the column its beginning, with the verdict.
-        let bottom = (ui.cursor().top() + 3.0 * ROW).min(top + ui.clip_rect().height());
-        let x = ui.max_rect().x_range();
-        ui.scroll_to_rect(egui::Rect::from_x_y_ranges(x, top..=bottom), None);
-    }
+    InSight::keep(ui, state, top);
     matrix_ui(ui, state, commands);
+}
+
+/// A new result comes into sight by itself, and stays there while the sections around it are arranged: until the
+/// user scrolls in the column or does something. Not where the user scrolled while the match ran.
+#[derive(Debug, Clone, Copy, Default)]
+struct InSight {
+    stamp: Option<Stamp>,
+    /// The sections that are unfolded; as they change, the result moves.
+    unfolded: [bool; 4],
+    is_running: bool,
+    has_scrolled: bool,
+    is_kept: bool,
+    /// Frames until it stands still.
+    n_left: u8,
+}
+
+/// Frames after which the sections stand still.
+const SETTLING: u8 = 10;
+
+impl InSight {
+    fn keep(ui: &Ui, state: &AppState, top: f32) {
+        let id = egui::Id::unique("result in sight");
+        let before: Self = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+        let stamp = state.document.result.as_ref().map(|result| result.stamp);
+        let is_in_column = ui.rect_contains_pointer(ui.clip_rect());
+        let (is_scrolling, is_pressed) = ui.input(|input| {
+            let is_scrolling = input.smooth_scroll_delta().y != 0.0;
+            // Keys and screen readers may lead elsewhere too.
+            let mut events = input.events.iter();
+            let is_led = events.any(|event| {
+                let is_key = matches!(event, Event::Key { pressed: true, .. });
+                is_key || matches!(event, Event::AccessKitActionRequest(_))
+            });
+            let is_pressed = is_led || is_in_column && input.pointer.any_pressed();
+            (is_scrolling && is_in_column, is_pressed)
+        });
+        let mut now = Self {
+            stamp,
+            unfolded: unfolded(ui),
+            is_running: state.jobs.is_active(JobKey::Match),
+            is_kept: before.is_kept && !is_scrolling && !is_pressed,
+            n_left: before.n_left.saturating_sub(1),
+            ..before
+        };
+        if now.is_running {
+            now.has_scrolled = is_scrolling || before.is_running && before.has_scrolled;
+        }
+        let is_arranged = now.unfolded != before.unfolded;
+        if stamp != before.stamp {
+            now.is_kept = !now.has_scrolled;
+            now.has_scrolled = false;
+            now.n_left = SETTLING;
+        } else if is_arranged && state.view.sections.in_use() == Section::Match {
+            now.n_left = SETTLING;
+        }
+        ui.data_mut(|data| data.insert_temp(id, now));
+        if stamp.is_some() && now.is_kept && now.n_left > 0 {
+            // Of a card that is higher than the column its beginning, with the verdict.
+            let bottom = (ui.cursor().top() + 3.0 * ROW).min(top + ui.clip_rect().height());
+            let x = ui.max_rect().x_range();
+            ui.scroll_to_rect(egui::Rect::from_x_y_ranges(x, top..=bottom), None);
+        }
+    }
 }
 
 /// A pose made by hand is worth copying too. It stands below what the part is moved with, so that the first move
 /// shifts nothing there.
 pub fn pose_by_hand_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let is_alone = state.document.result.is_none() && state.document.has_pose();
-    if is_alone && Action::CopyMatrix.enabled(state).is_ok() {
+    if is_alone && state.document.has_part(Role::Stamped).is_ok() {
         matrix_ui(ui, state, commands);
     }
 }
@@ -133,9 +195,15 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
     let verdict = result.verdict();
     let mut refused = None;
     ui.horizontal(|ui| {
-        let mut text = format!("{} {}", verdict.sign(), verdict.label());
-        text += &pose_number(state, result);
-        let color = verdict_color(palette, verdict);
+        let verdict = (
+            format!("{} {}", verdict.sign(), verdict.label()) + &pose_number(state, result),
+            verdict_color(palette, verdict),
+        );
+        let preview = state.previews.of_match().map(|preview| {
+            let title = format!("Preview of start {}", preview.start() + 1);
+            (title, palette.secondary)
+        });
+        let (text, color) = preview.unwrap_or(verdict);
         let label = ui.label(RichText::new(text).color(color).size(17.0));
         ui.ctx().accesskit_node_builder(label.id, |node| {
             node.set_live(egui::accesskit::Live::Polite);
@@ -160,8 +228,14 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
     if is_unit_in_doubt {
         return;
     }
-    for statement in assessment.statements(lengths) {
-        paragraph(ui, sentence(&statement));
+    // A reason that tells how far the pose may be off has said all that the statement would.
+    let tells_offset = |reason: &Reason| matches!(reason, Reason::Uncertain { .. });
+    let is_told = assessment.reasons.iter().take(n_told).any(tells_offset)
+        && assessment
+            .uncertainty()
+            .is_some_and(|stated| stated.unknown_offset == 0.0);
+    for statement in assessment.statements(lengths).iter().skip(is_told.into()) {
+        paragraph(ui, sentence(statement));
     }
 }
 
@@ -176,8 +250,8 @@ const TOLERANCE_HELP: &str = "Shape tolerance: how far the shapes may differ bes
                               verdict follows at once; the pose stays. An empty field takes the automatic \
                               tolerance";
 
-/// Room for the word before the tolerance with air beside it.
-const WITHIN: f32 = 48.0;
+/// Air between the verdict and the name of the tolerance.
+const AIR: f32 = 12.0;
 
 /// The tolerance of the verdict; another one gives a new verdict. From right to left. Says why
 /// a typed one was refused.
@@ -208,13 +282,14 @@ fn tolerance_ui(
         }
         let takes = Takes::length(setting.label, state.lengths(), limits::LENGTH);
         let lengths = state.lengths();
+        let before = shown;
         let field = takes.field(&mut shown).speed(0.01 * usual).max_decimals(4);
         let field = if is_automatic {
             field.custom_formatter(move |value, _| lengths.number(value))
         } else {
             field
         };
-        let (field, why) = told_field(ui, setting.label, field, |text| match text.trim() {
+        let (field, why) = told_field(ui, setting.label, before, field, |text| match text.trim() {
             // The automatic one.
             "" => Ok(0.0),
             text => takes.read(text),
@@ -224,8 +299,17 @@ fn tolerance_ui(
             *tolerance = shown;
         }
         // In a narrow column it would touch the verdict.
-        if ui.available_width() > WITHIN {
-            caption(ui, "within");
+        let font = egui::TextStyle::Small.resolve(ui.style());
+        let fits = |name: &&str| {
+            let color = egui::Color32::PLACEHOLDER;
+            let laid = ui
+                .painter()
+                .layout_no_wrap((*name).to_owned(), font.clone(), color);
+            laid.size().x + AIR < ui.available_width()
+        };
+        let name = [setting.label, "tolerance"].into_iter().find(fits);
+        if let Some(name) = name {
+            caption(ui, name);
         }
     });
     if recipe != state.document.recipe {
@@ -368,12 +452,14 @@ fn matrix_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             "Copy matrix"
         };
         let look = (label, Look::Plain, vec2(width, ROW + 4.0));
-        let mut none = Vec::new();
-        let response = action_button(ui, state, Action::CopyMatrix, look, &mut none);
-        if response.clicked() {
+        let tooltip = format!(
+            "{}\nAs {}",
+            action_tooltip(Action::CopyMatrix),
+            last.label()
+        );
+        if told_button(ui, state, Action::CopyMatrix, look, &tooltip).clicked() {
             commands.push(ExportCommand::Copy(last).into());
         }
-        response.on_hover_text(format!("As {}", last.label()));
         let menu = egui::containers::menu::MenuButton::from_button(square("▾", ROW + 4.0));
         let (button, _) = tight(ui, |ui| {
             menu.ui(ui, |ui| copy_forms_ui(ui, state, commands))
@@ -385,13 +471,15 @@ fn matrix_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         .id_salt("matrix")
         .show_unindented(ui, |ui| {
             caption(ui, "p_crash = R · p_stamped + t, column vectors");
-            grid_ui(ui, &pose.to_rows());
+            ui.scope(|ui| grid_ui(ui, &pose.to_rows()));
             moved_ui(ui, state);
         });
 }
 
 /// Every digit, in columns that line up; it scrolls sideways rather than being rounded.
 fn grid_ui(ui: &mut Ui, rows: &[[f64; 4]; 4]) {
+    // The bar has a strip of its own, so that no digits lie under it.
+    ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
     egui::ScrollArea::horizontal()
         .id_salt("matrix digits")
         .show(ui, |ui| {
@@ -414,7 +502,7 @@ fn grid_ui(ui: &mut Ui, rows: &[[f64; 4]; 4]) {
 /// What people expect of a translation: how far the part's centre goes, and how much it turns.
 fn moved_ui(ui: &mut Ui, state: &AppState) {
     let pose = state.document.crash_from_stamped();
-    let Some(part) = state.document.part(crate::role::Role::Stamped) else {
+    let Some(part) = state.document.part(Role::Stamped) else {
         return;
     };
     let center = part.bounds().center();

@@ -157,8 +157,9 @@ fn value_ui<R>(ui: &mut Ui, state: &AppState, setting: &Setting<R>, value: &mut 
         }
         (Domain::Count(range), Value::Count(n)) => {
             let takes = Takes::count(setting.label, range.clone());
+            let before = *n as f64;
             let field = takes.field(n).speed(1.0);
-            typed_ui(ui, setting, field, |text| takes.read(text));
+            typed_ui(ui, setting, (before, field), |text| takes.read(text));
         }
         (
             Domain::Number {
@@ -175,8 +176,9 @@ fn value_ui<R>(ui: &mut Ui, state: &AppState, setting: &Setting<R>, value: &mut 
                 Unit::EdgeLengths => Takes::number(setting.label, " edges", range.clone()),
                 _ => Takes::number(setting.label, unit.suffix(lengths), range.clone()),
             };
+            let before = *number;
             let field = takes.field(number).speed(*step).max_decimals(6);
-            typed_ui(ui, setting, field, |text| takes.read(text));
+            typed_ui(ui, setting, (before, field), |text| takes.read(text));
         }
         (Domain::Reach, Value::Reach(reach)) => {
             // No reach is 0; it stands for the word.
@@ -195,11 +197,11 @@ fn value_ui<R>(ui: &mut Ui, state: &AppState, setting: &Setting<R>, value: &mut 
 fn typed_ui<R>(
     ui: &mut Ui,
     setting: &Setting<R>,
-    field: DragValue<'_>,
+    (value, field): (f64, DragValue<'_>),
     read: impl Fn(&str) -> Result<f64, String>,
 ) {
     let refused = form_row(ui, setting.label, LABEL, |ui| {
-        let (response, refused) = told_field(ui, setting.label, field, read);
+        let (response, refused) = told_field(ui, setting.label, value, field, read);
         response.on_hover_text(setting.help);
         refused
     });
@@ -260,8 +262,9 @@ fn floor_ui<R>(ui: &mut Ui, setting: &Setting<R>, floor: &mut Floor, lengths: Le
     if let Floor::Length(length) = floor {
         let takes = Takes::length(FLOOR_LENGTH, lengths, limits::LENGTH);
         let refused = form_row(ui, "", LABEL, |ui| {
+            let before = *length;
             let field = takes.field(length).speed(0.01).max_decimals(6);
-            told_field(ui, FLOOR_LENGTH, field, |text| takes.read(text)).1
+            told_field(ui, FLOOR_LENGTH, before, field, |text| takes.read(text)).1
         });
         refusal(ui, refused);
     }
@@ -274,7 +277,8 @@ fn auto_length_ui<R>(
     length: &mut f64,
     (lengths, range, step): (Lengths, RangeInclusive<f64>, f64),
 ) {
-    let is_auto = *length == 0.0;
+    let before = *length;
+    let is_auto = before == 0.0;
     let takes = Takes::length(setting.label, lengths, range);
     let field = takes
         .bare_field(length)
@@ -289,7 +293,7 @@ fn auto_length_ui<R>(
                 AUTO.to_owned()
             }
         });
-    typed_ui(ui, setting, field, |text| match text.trim() {
+    typed_ui(ui, setting, (before, field), |text| match text.trim() {
         "" | AUTO => Ok(0.0),
         text => takes.read(text),
     });
@@ -310,8 +314,10 @@ fn limit_ui<R>(ui: &mut Ui, state: &AppState, setting: &Setting<R>, limit: &mut 
             *limit = is_on.then_some(USUAL_LEVEL);
         }
         let takes = Takes::count(setting.label, LEVELS);
-        let field = takes.field(limit.as_mut()?).speed(20.0);
-        told_field(ui, setting.label, field, |text| takes.read(text)).1
+        let limit = limit.as_mut()?;
+        let before = *limit as f64;
+        let field = takes.field(limit).speed(20.0);
+        told_field(ui, setting.label, before, field, |text| takes.read(text)).1
     });
     refusal(ui, refused.inner);
 }

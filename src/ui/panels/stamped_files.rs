@@ -131,6 +131,7 @@ fn pose_ui(ui: &mut Ui, row: &StampedRow, state: &AppState, commands: &mut Vec<C
 /// What is known of a file, in a word.
 fn state_ui(ui: &mut Ui, state: &StampedState) {
     let palette = Palette::of(ui);
+    let pose;
     let (word, color, more) = match state {
         StampedState::Reading => ("reading …", palette.secondary, None),
         StampedState::NotRead(_) => ("not read", palette.poor, None),
@@ -147,6 +148,14 @@ fn state_ui(ui: &mut Ui, state: &StampedState) {
             verdict_color(palette, *verdict),
             Some(line.clone()),
         ),
+        StampedState::Alternative(verdict, number) => {
+            pose = format!("{}, pose {number}", verdict.label());
+            (
+                pose.as_str(),
+                verdict_color(palette, *verdict),
+                Some("Another pose of its match, which section 3 tells of".to_owned()),
+            )
+        }
         StampedState::AsFirst => return,
         StampedState::ByHand => (
             "by hand",

@@ -142,17 +142,18 @@ fn menu_ui(ui: &mut Ui, state: &AppState, menu: Menu, commands: &mut Vec<Command
             }
             None => items(ui, commands),
         }
+        // Below what opens other files.
+        let is_open = group.rows.iter().any(|row| row.action == Action::OpenCrash);
+        if is_open && !state.settings.recent.is_empty() {
+            recent_ui(ui, state, commands);
+        }
+        if is_open && !state.project.sessions.is_empty() {
+            recovered_menu_ui(ui, state, commands);
+        }
     }
     if menu == Menu::Export {
         ui.separator();
         export_forms_ui(ui, state, commands);
-    }
-    if menu == Menu::File && !state.settings.recent.is_empty() {
-        ui.separator();
-        recent_ui(ui, state, commands);
-    }
-    if menu == Menu::File && !state.project.sessions.is_empty() {
-        recovered_menu_ui(ui, state, commands);
     }
 }
 

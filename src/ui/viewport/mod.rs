@@ -101,7 +101,11 @@ impl Viewports {
             return;
         }
         let id = ui.make_persistent_id(("viewport", role.word()));
-        let response = ui.interact(rect, id, Sense::click_and_drag());
+        // The edges of the panels around it are gripped from both sides.
+        let grip = ui.style().interaction.resize_grab_radius_side;
+        let sensed = rect.shrink(grip.min(0.25 * rect.size().min_elem()));
+        let mut response = ui.interact(sensed, id, Sense::click_and_drag());
+        response.rect = rect;
         response.widget_info(|| {
             WidgetInfo::labeled(egui::Role::Canvas, true, window::summary(state, role))
         });

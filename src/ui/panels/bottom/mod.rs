@@ -15,10 +15,10 @@ mod timings;
 
 use egui::{Align, Button, Frame, Layout, Margin, RichText, Stroke, Ui, vec2};
 
-use crate::app::{AppState, BottomTab, Command, ViewCommand};
+use crate::app::{Action, AppState, BottomTab, Command, ViewCommand};
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::viewport::Viewports;
-use crate::ui::widgets::caption;
+use crate::ui::widgets::{Look, action_button, caption};
 
 /// Tabs and content.
 pub fn bottom_ui(
@@ -76,7 +76,7 @@ fn tabs_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 tab_row(ui, &tabs, state, (room - STATUS, commands));
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                status_ui(ui, state);
+                status_ui(ui, state, commands);
             });
         });
     });
@@ -188,8 +188,14 @@ fn tab_ui(ui: &mut Ui, tab: BottomTab, state: &AppState, commands: &mut Vec<Comm
     }
 }
 
-/// What runs, at the right edge of the tabs.
-fn status_ui(ui: &mut Ui, state: &AppState) {
+/// What runs, at the right edge of the tabs, and the way out of it wherever the left column stands.
+fn status_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    if state.jobs.locking_job().is_some() {
+        let look = ("Cancel", Look::Plain, vec2(0.0, ROW));
+        let button = action_button(ui, state, Action::CancelRun, look, commands);
+        button.accessible_name(Action::CancelRun.row().label);
+        ui.add_space(6.0);
+    }
     let Some(job) = state.jobs.running() else {
         caption(ui, "ready");
         return;

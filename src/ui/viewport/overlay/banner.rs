@@ -5,7 +5,7 @@ use egui::{Button, CornerRadius, FontId, Rect, RichText, Stroke, Ui, vec2};
 
 use super::Overlay;
 use crate::app::{Action, AppState, Command, PreviewCommand};
-use crate::assess::Coverage;
+use crate::assess::error_beside;
 use crate::role::Role;
 
 /// Above the scale bar and the readout.
@@ -86,15 +86,11 @@ fn poses(state: &AppState) -> Option<Banner> {
     }
     let number = result.alternative.map_or(1, |index| index + 2);
     let mut text = format!("Pose {number} of {n_poses}");
-    let best = result.run.assessment.coverage.rmse();
-    let own = state.result_coverage().map(Coverage::rmse);
-    match own {
-        Some(own) if result.alternative.is_some() => {
-            let (own, best) = (state.lengths().number(own), state.lengths().of(best));
-            text += &format!(" · RMS {own} against {best}");
-        }
-        Some(own) => text += &format!(" · RMS {}", state.lengths().of(own)),
-        None => {}
+    // As card, record and report tell the poses apart.
+    let shown = result.alternative;
+    match shown.and_then(|index| result.run.outcome.alternatives.get(index)) {
+        Some(other) => text += &format!(" · {}", error_beside(other.score_ratio)),
+        None => text += " · the best",
     }
     let key = Action::NextAlternative.row().shortcut();
     let key = key.map_or_else(String::new, |key| format!("   {key}"));

@@ -313,7 +313,8 @@ fn overlap(state: &AppState) -> Option<String> {
     if let Some(change) = known.change.filter(|change| change.abs() >= 0.005) {
         // Without an arrow: a triangle stands for the stamped part.
         let sign = if change > 0.0 { "+" } else { "−" };
-        text += &format!(" ({sign}{})", whole_percent(change.abs()));
+        let points = (100.0 * change.abs()).round() as usize;
+        text += &format!(" ({sign}{})", counted(points, "point"));
     }
     Some(text)
 }

@@ -105,7 +105,9 @@ fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32, legend: Option<Rec
     pieces.push(vector((*place).into(), 1));
     pieces.extend(hit.element.map(|element| format!("element {element}")));
     // A row ends between two pieces only.
-    let whole = pieces.iter().map(|piece| piece.replace(' ', "\u{a0}"));
+    let whole = pieces
+        .iter()
+        .map(|piece: &String| piece.replace(' ', "\u{a0}"));
     let text = whole.collect::<Vec<_>>().join("  ");
     let window = over.frame.rect();
     // The lower left corner is that of the cube.
@@ -124,9 +126,13 @@ fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32, legend: Option<Rec
             painter.layout_job(job)
         };
         let mut galley = lay(text.clone(), READOUT_ROWS);
-        if galley.elided {
-            // Too narrow for a place: better broken than cut.
-            galley = lay(text.replace(",\u{a0}", ", "), 2 * READOUT_ROWS);
+        let widest = pieces.iter().map(|piece| {
+            let laid = painter.layout_no_wrap(piece.clone(), font.clone(), color);
+            laid.size().x
+        });
+        if galley.elided || widest.fold(0.0, f32::max) > room {
+            // Too narrow for a place: better broken between its words than within one, or cut.
+            galley = lay(text.replace('\u{a0}', " "), 2 * READOUT_ROWS);
         }
         let size = galley.size() + vec2(14.0, 8.0);
         let mut corner = Pos2::new(right, window.bottom()) - Vec2::splat(MARGIN) - size;

@@ -236,6 +236,7 @@ fn limit_field(
         Limit::Upper => scale.max,
         Limit::Lower => scale.min,
     };
+    let before = value;
     let row = ui.horizontal(|ui| {
         ui.add_space(HISTOGRAM - 2.0);
         let takes = Takes::number(limit.name(), "", -1e9..=1e9);
@@ -244,7 +245,7 @@ fn limit_field(
             .speed(0.01 * scale.max.abs().max(scale.min.abs()))
             .custom_formatter(|value, _| signed(value));
         let is_alone = ui.input(|i| i.modifiers.alt);
-        let (response, refused) = told_field(ui, limit.name(), field, |text| {
+        let (response, refused) = told_field(ui, limit.name(), before, field, |text| {
             let value = takes.read(text)?;
             limits_with(scale, limit, value, is_alone)?;
             Ok(value)
@@ -490,7 +491,9 @@ fn tolerance(
             .field(&mut value)
             .speed(0.01 * scale.max.abs())
             .custom_formatter(|value, _| length(value));
-        let (response, refused) = told_field(ui, "Tolerance", field, |text| takes.read(text));
+        let (response, refused) = told_field(ui, "Tolerance", scale.tolerance, field, |text| {
+            takes.read(text)
+        });
         response.widget_info(|| {
             let name = format!("Tolerance ({})", over.role().word());
             WidgetInfo::labeled(egui::Role::SpinButton, true, name)

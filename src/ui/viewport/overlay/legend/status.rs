@@ -6,10 +6,9 @@ use super::bar;
 use crate::app::{Command, InspectCommand, MapPicture};
 use crate::colormap::ColorScale;
 use crate::role::Role;
-use crate::text::{counted, grouped};
+use crate::text::{self, counted, grouped};
 use crate::ui::theme::color;
 use crate::ui::viewport::overlay::Overlay;
-use crate::ui::widgets::percent;
 
 /// A row for each status that occurs; a click flies to the first element that has it.
 pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
@@ -59,7 +58,7 @@ pub(super) fn row(ui: &mut Ui, over: &Overlay<'_>, class: &Class<'_>, commands: 
             ui.spacing_mut().item_spacing.y = 0.0;
             let name = RichText::new(class.name).size(12.0);
             ui.add(egui::Label::new(name).truncate());
-            let numbers = RichText::new(format!("{} · {}", grouped(n), percent(share)));
+            let numbers = RichText::new(format!("{} · {}", grouped(n), text::share(share)));
             ui.label(numbers.size(11.0).color(over.frame.look.weak));
         });
         ui.with_layout(Layout::right_to_left(Align::Center), |_| {});
@@ -73,7 +72,7 @@ pub(super) fn row(ui: &mut Ui, over: &Overlay<'_>, class: &Class<'_>, commands: 
         "{}: {}, {}",
         class.name,
         counted(n, "element"),
-        percent(share)
+        text::share(share)
     );
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
     let response = response.on_hover_text("Look at the first of these elements");
