@@ -162,11 +162,16 @@ pub(super) fn curves_of(surface: &Surface) -> Vec<BorderCurve> {
     closed.map(border).collect()
 }
 
-/// Median distance of a border's node from the middle between its neighbours; next to nothing along straight
-/// and smoothly curved borders, whatever folds and corners they have.
+/// Median distance of an outline's node from the middle between its neighbours; next to nothing along straight and
+/// smoothly curved outlines, whatever folds and corners they have. Holes tell only where there is no outline: a small one
+/// of a few nodes steps aside though it is cut clean.
 pub(super) fn ragged(borders: &[BorderCurve], unit: f64) -> f64 {
     let mut steps = Vec::new();
-    for border in borders {
+    let has_outline = borders.iter().any(|border| !border.is_hole);
+    for border in borders
+        .iter()
+        .filter(|border| !(has_outline && border.is_hole))
+    {
         let count = border.points.len();
         for (i, p) in border.points.iter().enumerate() {
             let [before, after] = [(i + count - 1) % count, (i + 1) % count];

@@ -280,10 +280,11 @@ impl Borders {
         self.holes.iter().chain(&self.overlapping)
     }
 
-    /// What 90 % of the pairs do not exceed of these distances across them, one for each pair.
+    /// What 90 % of the pairs of like borders do not exceed of these distances across them, one for each pair.
     pub(super) fn distance_of_most(&self, left: &[f64]) -> f64 {
-        let sizes = left.iter().map(|left| left.abs());
-        let sizes = sizes.zip(self.pairs.iter().map(|p| p.weight));
+        let pairs = self.pairs.iter().zip(left);
+        let alike = pairs.filter(|(pair, _)| pair.kind != PairKind::Mixed);
+        let sizes = alike.map(|(pair, left)| (left.abs(), pair.weight));
         quantile(&mut sizes.collect::<Vec<_>>(), 0.9)
     }
 
@@ -354,16 +355,20 @@ impl Borders {
         (share * mean_sq + alone * near * near).sqrt()
     }
 
-    /// The pairs' weights, less for those that lie far apart beside the others.
+    /// The pairs' weights, less for those that lie far apart beside the others, and none for the edge of a cut beside
+    /// a hole.
     pub(super) fn weights(&self, noise: f64) -> Vec<f64> {
         let gaps: Vec<f64> = self.pairs.iter().map(|p| p.gap).collect();
         // Ragged borders know a place only as well as their steps are small, and all to one side.
         let known = (BORDER_FACETS * self.edge / self.unremarkable()).powi(2);
         let areas: Vec<f64> = self.pairs.iter().map(|p| known * p.weight).collect();
         let mut weights = robust_weights(&gaps, &areas, noise.max(self.unremarkable()));
-        for (weight, area) in weights.iter_mut().zip(&areas) {
+        for ((weight, area), pair) in weights.iter_mut().zip(&areas).zip(&self.pairs) {
             // Where no surface holds the part, borders do, however far apart.
-            *weight = weight.max(LEAST_WEIGHT * area);
+            *weight = match pair.kind {
+                PairKind::Mixed => 0.0,
+                PairKind::Outlines | PairKind::Holes => weight.max(LEAST_WEIGHT * area),
+            };
         }
         weights
     }

@@ -21,6 +21,8 @@ use crate::registration::{MatchOutcome, Termination};
 const ENOUGH_MET: f64 = 0.75;
 /// Scores of the opposite hand below this fraction of the result's fit clearly better.
 pub(super) const OPPOSITE_HAND: f64 = 0.8;
+/// Below this fraction they do whatever else differs between the shapes.
+const SURELY_OPPOSITE: f64 = 0.25;
 /// Below this one they fit a little better.
 pub(super) const NEAR_MIRROR: f64 = 0.98;
 /// Several target parts so many times as large as the source hold more than it, …
@@ -116,7 +118,9 @@ fn hand(
     if mirrored.is_some_and(|mirrored| fits_better(shape, mirrored)) {
         return None;
     }
-    if score_ratio < OPPOSITE_HAND && mirrored.is_none_or(|mirrored| fits_better(mirrored, shape)) {
+    let is_sure = score_ratio < SURELY_OPPOSITE;
+    let fits_better = |mirrored| fits_better(mirrored, shape);
+    if is_sure || score_ratio < OPPOSITE_HAND && mirrored.is_none_or(fits_better) {
         return Some(Reason::OppositeHand { score_ratio });
     }
     (score_ratio < NEAR_MIRROR).then_some(Reason::NearMirrorImage { score_ratio })

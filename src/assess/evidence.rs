@@ -2,7 +2,9 @@
 //! prepared once and asked for one pose after another.
 
 use super::borders::{BorderComparison, Borders};
-use super::contact::{Contact, ContactSearch, Contacts, MAX_NODES};
+use nalgebra::SMatrix;
+
+use super::contact::{Contact, ContactSearch, Contacts, MAX_NODES, Six, solve};
 use super::tolerance::Distances;
 use crate::geometry::{Point3, Similarity};
 use crate::registration::Surface;
@@ -23,6 +25,20 @@ pub(crate) struct PoseEvidence<'a> {
 }
 
 impl PoseEvidence<'_> {
+    /// The pose moved to where the squares of the distances of the surfaces, without an offset, are least; what lies
+    /// far apart counts in full, as beads do beside the smooth rest. O(places).
+    pub(crate) fn closer_surfaces(&self) -> Similarity {
+        let contacts = &self.contacts;
+        let (mut matrix, mut right) = (SMatrix::<f64, 6, 6>::zeros(), Six::zeros());
+        let gaps = contacts.without_offset(f64::INFINITY);
+        for (contact, gap) in contacts.list.iter().zip(gaps) {
+            let row = contacts.row(&contact.point, &contact.normal);
+            matrix.ger(contact.weight, &row, &row, 1.0);
+            right += row * (contact.weight * gap);
+        }
+        contacts.undo(&solve(&matrix, &right)).after(&self.pose)
+    }
+
     /// Share of the smaller part's area that lies beyond the borders of the other.
     pub(super) fn overhang(&self) -> f64 {
         self.search().overhang(&self.pose)

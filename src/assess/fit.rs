@@ -3,6 +3,7 @@
 mod bends;
 mod equations;
 
+use super::borders::PairKind;
 use super::contact::{Contact, Contacts, Six, robust_weights, solve};
 use super::evidence::PoseEvidence;
 use crate::geometry::{Point3, Similarity, Vector3};
@@ -74,6 +75,12 @@ impl Fit {
         self.is_separable.then_some(self.offset)
     }
 
+    /// How far the hole that lies farthest from its counterpart is off; 0 without holes.
+    pub(super) fn worst_hole(&self) -> f64 {
+        let off = self.holes.iter().map(|hole| hole.off.norm());
+        off.fold(0.0, f64::max)
+    }
+
     /// What nothing explains at a place that did not take part; `contacts` are those that did.
     pub(super) fn left_at(&self, place: &Contact, contacts: &Contacts) -> f64 {
         let row = explaining(contacts, &self.bends, &place.point, &place.normal, 1.0);
@@ -90,6 +97,28 @@ impl Fit {
     /// (second and third order). Borders take part, so that a slide of the pose along the part is no
     /// difference of the shape. O(places).
     pub(crate) fn of(evidence: &PoseEvidence<'_>) -> Self {
+        Self::with(evidence, &evidence.borders.weights(evidence.noise))
+    }
+
+    /// The same with surfaces and holes alone, outlines only measured.
+    pub(crate) fn without_outlines(evidence: &PoseEvidence<'_>) -> Self {
+        let borders = &evidence.borders;
+        let weights = borders.weights(evidence.noise);
+        let pairs = borders.pairs().iter().zip(weights);
+        let of_holes = pairs.map(|(pair, weight)| match pair.kind {
+            PairKind::Holes => weight,
+            PairKind::Outlines | PairKind::Mixed => 0.0,
+        });
+        Self::with(evidence, &of_holes.collect::<Vec<f64>>())
+    }
+
+    /// The same with surfaces alone.
+    pub(crate) fn of_surfaces(evidence: &PoseEvidence<'_>) -> Self {
+        Self::with(evidence, &vec![0.0; evidence.borders.pairs().len()])
+    }
+
+    /// With these weights of the pairs of borders.
+    fn with(evidence: &PoseEvidence<'_>, border_weights: &[f64]) -> Self {
         let (contacts, borders) = (&evidence.contacts, &evidence.borders);
         let bends = Bends::of(evidence.source, &evidence.pose, contacts);
         let row = |point: &Point3, direction: &Vector3, offset: f64| {
@@ -103,7 +132,6 @@ impl Fit {
         let mut left: Vec<f64> = contacts.list.iter().map(|c| c.gap).collect();
         let mut found = Row::zeros();
         let mut is_separable = false;
-        let border_weights = borders.weights(evidence.noise);
         for round in 0..2 * ROUNDS {
             let has_offset = round < ROUNDS;
             if round == ROUNDS {
@@ -118,7 +146,7 @@ impl Fit {
             for ((row, contact), weight) in places.iter().zip(&contacts.list).zip(weights) {
                 equations.add(row, contact.gap, weight);
             }
-            for ((row, pair), weight) in beside.iter().zip(borders.pairs()).zip(&border_weights) {
+            for ((row, pair), weight) in beside.iter().zip(borders.pairs()).zip(border_weights) {
                 equations.add(row, pair.gap, *weight);
             }
             is_separable = own_share(&equations.matrix) > LEAST_OWN;

@@ -5,7 +5,7 @@ mod local;
 
 use serde::{Deserialize, Serialize};
 
-use super::borders::{Borders, LEAST_PAIRED};
+use super::borders::{Borders, LEAST_PAIRED, PairKind};
 use super::contact::Contacts;
 use super::evidence::PoseEvidence;
 use super::fit::{Fit, HoleLeft};
@@ -325,7 +325,7 @@ impl ShapeStatement {
             return reasons;
         };
         let pairs = borders.pairs().iter().zip(&fit.borders);
-        let within = pairs.filter(|(_, left)| left.abs() <= by);
+        let within = pairs.filter(|(pair, left)| pair.kind != PairKind::Mixed && left.abs() <= by);
         if let Some((pair, _)) = within.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) {
             let at = pair.point;
             reasons.push(ShapeReason::Borders { by, limit, at });

@@ -3,13 +3,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::borders::{BorderPair, Borders, PairKind};
+use super::borders::{BorderPair, Borders, HOLES_THAT_HOLD, PairKind};
 use super::contact::quantile;
 use super::evidence::PoseEvidence;
 use super::fit::Fit;
 use super::outline_shift::outline_aside_of_holes;
 use super::stretch;
-use super::tolerance::ShapeTolerance;
+use super::tolerance::{ShapeTolerance, UNREMARKABLE};
 use crate::geometry::Point3;
 use crate::geometry::serial::xyz;
 
@@ -19,6 +19,9 @@ const MOST_APART: f64 = 0.5;
 const LEFT: f64 = 0.5;
 /// Share of the outlines that the statement about borders is made at.
 const STATED: f64 = 0.9;
+
+/// Surfaces are fitted no less if no more is left on this share of them, which holds beads.
+pub(crate) const MOST_WITH_BEADS: f64 = 0.98;
 
 /// A stretch of border is told if it is at least this share of the borders beside each other.
 const STRETCH: f64 = 0.03;
@@ -34,9 +37,9 @@ pub struct BorderApart {
 }
 
 /// What is left of the borders of parts that were trimmed differently.
-pub(super) struct OtherTrim {
+pub(crate) struct OtherTrim {
     /// The borders that say something about the parts.
-    pub(super) left: Borders,
+    pub(crate) left: Borders,
     /// How far the others lie apart, at 90 % of them.
     pub(super) apart: f64,
 }
@@ -44,7 +47,7 @@ pub(super) struct OtherTrim {
 /// The borders without the outlines that lie apart because the parts were trimmed differently; `None` where they
 /// lie together, where one part looks like a longer, wider or higher version of the other, or where they lie aside of
 /// the holes as a whole.
-pub(super) fn other_trim(
+pub(crate) fn other_trim(
     evidence: &PoseEvidence<'_>,
     tolerance: &ShapeTolerance,
 ) -> Option<OtherTrim> {
@@ -84,9 +87,11 @@ pub(super) fn farthest_apart(borders: &Borders, left: &[f64], limit: f64) -> Opt
     let apart = stretches.filter_map(|(pairs, left)| {
         let mut sizes: Vec<f64> = left.iter().map(|x| x.abs()).collect();
         let by = *sizes.select_nth_unstable_by(n / 2, f64::total_cmp).1;
-        (by > limit).then_some(BorderApart {
+        let middle = &pairs[n / 2];
+        let are_alike = middle.kind != PairKind::Mixed;
+        (are_alike && by > limit).then_some(BorderApart {
             by,
-            at: pairs[n / 2].point,
+            at: middle.point,
         })
     });
     apart.max_by(|a, b| a.by.total_cmp(&b.by))
@@ -113,13 +118,30 @@ impl<'a> Outlines<'a> {
         if share_apart(borders, &as_they_are) <= 1.0 - STATED {
             return None;
         }
-        let fit = Fit::of(evidence);
-        let pairs = borders.pairs().iter().zip(fit.borders.iter().copied());
-        Some(Self {
-            borders,
-            is_apart: pairs.map(is_apart).collect(),
-            fit,
-        })
+        let under = |fit: Fit| {
+            let pairs = borders.pairs().iter().zip(fit.borders.iter().copied());
+            Self {
+                borders,
+                is_apart: pairs.map(is_apart).collect(),
+                fit,
+            }
+        };
+        let outlines = under(Fit::of(evidence));
+        let differs = outlines.share_apart() > 1.0 - STATED || outlines.fit.worst_hole() > limit;
+        let by_holes = differs.then(|| Fit::without_outlines(evidence));
+        match by_holes.filter(|fit| outlines.bend_aside(evidence, fit, limit)) {
+            Some(fit) => Some(under(fit)),
+            None => Some(outlines),
+        }
+    }
+
+    /// Whether the outlines push holes aside that lie on each other where surfaces and holes alone are fitted, which
+    /// fits the surfaces no less. Outlines of parts that were trimmed differently along a few sides look like a bend.
+    fn bend_aside(&self, evidence: &PoseEvidence<'_>, by_holes: &Fit, limit: f64) -> bool {
+        let remains = |fit: &Fit| evidence.contacts.at_share(&fit.left, MOST_WITH_BEADS);
+        by_holes.holes.len() >= HOLES_THAT_HOLD
+            && by_holes.worst_hole() <= limit.min(self.fit.worst_hole())
+            && remains(by_holes) <= remains(&self.fit) + UNREMARKABLE * limit
     }
 
     /// Share of the outlines that lies apart.

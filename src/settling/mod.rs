@@ -18,6 +18,7 @@ mod pulled_aside;
 mod refine_with_borders;
 mod remove_bend;
 mod remove_offset;
+mod remove_trims;
 
 pub use all_pairs::is_better_with_all_pairs;
 pub use alternatives::chosen_by_shape;
@@ -30,6 +31,7 @@ pub use pulled_aside::{PulledAside, Remainder, pulled_aside};
 pub use refine_with_borders::refined_with_borders;
 pub use remove_bend::without_bend;
 pub use remove_offset::without_offset;
+pub use remove_trims::without_trims;
 
 use crate::assess::AssessSettings;
 use crate::monitor::{Cancelled, Monitor};
@@ -57,6 +59,9 @@ pub fn settle(
     take(outcome, placed);
     let placed = placed_as_a_whole(&context, outcome)?;
     take(outcome, placed);
+    if let Some(pose) = without_trims(&context, &outcome.target_from_source)? {
+        outcome.target_from_source = pose;
+    }
     // Both hands are compared where their surfaces lie closest.
     if let Some(ratio) = hand_by_borders(&context, outcome)? {
         outcome.mirror_check.score_ratio = Some(ratio);

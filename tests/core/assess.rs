@@ -752,6 +752,73 @@ fn a_channel_whose_ends_coincide_is_as_likely_as_one_whose_walls_do() {
     );
 }
 
+/// `n` × `m` cells of 10 mm without those in holes, its right and upper ends cut off by these lengths; a hole is given by
+/// its first column and row and its width in cells.
+fn holed(
+    [n, m]: [u32; 2],
+    cut_off: [f64; 2],
+    holes: &[[u32; 3]],
+    height: impl Fn(f64, f64) -> f64,
+) -> TriMesh {
+    let points = (0..(n + 1) * (m + 1)).map(|k| {
+        let (i, j) = (k % (n + 1), k / (n + 1));
+        let [off_x, off_y] = [(i == n, cut_off[0]), (j == m, cut_off[1])]
+            .map(|(is_end, by)| if is_end { by } else { 0.0 });
+        let (x, y) = (10.0 * f64::from(i) - off_x, 10.0 * f64::from(j) - off_y);
+        Point3::new(x, y, height(x, y))
+    });
+    let is_hole = |i: u32, j: u32| {
+        let holds = |[left, low, width]: &[u32; 3]| {
+            (*left..left + width).contains(&i) && (*low..low + width).contains(&j)
+        };
+        holes.iter().any(holds)
+    };
+    let cells = (0..n * m).map(|k| (k % n, k / n));
+    let solid = cells.filter(|&(i, j)| !is_hole(i, j));
+    let triangles = solid.flat_map(|(i, j)| {
+        let a = j * (n + 1) + i;
+        [[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]]
+    });
+    TriMesh::new(points.collect(), triangles.collect()).unwrap()
+}
+
+#[test]
+fn outlines_that_end_a_few_millimetres_apart_do_not_pull_a_part_aside() {
+    let arch = |x: f64, _: f64| 40.0 * ((x - 300.0) / 300.0).powi(2);
+    let holes = [[8, 6, 3], [44, 18, 3], [28, 12, 4], [46, 5, 3]];
+    let [crash, stamped] =
+        [[0.0; 2], [8.0, 4.0]].map(|cut_off| holed([60, 30], cut_off, &holes, arch));
+    let [source, target] = [&stamped, &crash].map(|mesh| Surface::new(mesh, "source").unwrap());
+    let mut outcome = matched(&source, &target);
+    let (settings, monitor) = (AssessSettings::default(), Monitor::silent());
+    let as_usual = MatchSettings::default();
+    settle(
+        &mut outcome,
+        [&source, &target],
+        &as_usual,
+        &settings,
+        &monitor,
+    )
+    .unwrap();
+    // Before, the ends shared out what was cut off: it lay 2.4 mm aside.
+    let error = worst_node(
+        &stamped,
+        &Similarity::identity(),
+        &outcome.target_from_source,
+    );
+    assert!(error < 0.05, "{error} mm");
+}
+
+#[test]
+fn the_edge_of_a_cut_beside_a_hole_is_not_its_border() {
+    let waves = |x: f64, y: f64| 30.0 * (x / 70.0).cos() * (y / 60.0).cos() + x * x / 4000.0;
+    let whole = holed([60, 15], [0.0; 2], &[[20, 4, 8]], waves);
+    // The piece ends 4 mm before the hole.
+    let piece = holed([20, 15], [4.0, 0.0], &[], waves);
+    let (_, assessed) = judge(&piece, &whole);
+    assert_eq!(assessed.verdict, Verdict::Good, "{:?}", assessed.reasons);
+}
+
 #[test]
 fn every_step_that_moves_a_pose_hears_a_cancel() {
     let [source, target] = [9.0, 7.0].map(|pitch| {
@@ -773,6 +840,7 @@ fn every_step_that_moves_a_pose_hears_a_cancel() {
     assert!(placed_by_holes(&context, &before).is_err());
     assert!(placed_as_a_whole(&context, &before).is_err());
     assert!(hand_by_borders(&context, &before).is_err());
+    assert!(without_trims(&context, pose).is_err());
     assert!(without_bend(&context, pose).is_err());
     assert!(without_offset(&context, pose).is_err());
     let (surfaces, as_usual) = ([&source, &target], MatchSettings::default());
