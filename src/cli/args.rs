@@ -199,6 +199,9 @@ pub struct ReduceArgs {
     /// File to write; its extension selects the format (.k, .stl, .ply, .obj).
     #[arg(long, short, value_name = "FILE")]
     pub out: PathBuf,
+    /// Another folder to search for included files; may be given several times.
+    #[arg(long, value_name = "FOLDER")]
+    pub include_folder: Vec<PathBuf>,
     /// Part to reduce, as for match --crash-part.
     #[arg(long, value_name = "PART")]
     pub part: Option<String>,
@@ -215,6 +218,9 @@ pub struct ReduceArgs {
 pub struct InfoArgs {
     /// The file to read.
     pub input: PathBuf,
+    /// Another folder to search for included files; may be given several times.
+    #[arg(long, value_name = "FOLDER")]
+    pub include_folder: Vec<PathBuf>,
     /// Limit on the file with its includes, unpacked, in GiB.
     #[arg(long, value_name = "GIB", allow_negative_numbers = true, default_value_t = 4.0, value_parser = positive)]
     pub read_limit: f64,

@@ -13,7 +13,8 @@ pub fn run(args: &BenchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let monitor = progress::monitor(quiet);
     let table = growth(args.largest, &monitor, |_| {})?;
     drop(monitor);
-    if !takes_stdout(args.json.as_deref()) {
+    let texts = [&args.json, &args.html];
+    if !texts.iter().any(|text| takes_stdout(text.as_deref())) {
         print(&describe(&table))?;
     }
     if let Some(path) = &args.json {

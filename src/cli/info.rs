@@ -22,7 +22,10 @@ pub fn run(args: &InfoArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     )?;
     let model = formats::read(
         &args.input,
-        &ReadOptions::default().with_limit(args.read_limit),
+        &ReadOptions {
+            include_folders: args.include_folder.clone(),
+            ..ReadOptions::default().with_limit(args.read_limit)
+        },
         &progress::monitor(quiet),
     )?;
     let files: Vec<PathBuf> = model.files.iter().map(|file| file.path.clone()).collect();

@@ -16,8 +16,8 @@ use super::placing::{Placed, place};
 use super::recipe::selection;
 use super::setting_args::MapSettingArgs;
 use super::{
-    UsageError, check_outputs, is_stdout, json_target, print, progress, warn_of_tools, write_json,
-    write_output,
+    NamedFiles, UsageError, check_outputs, is_stdout, json_target, print, progress, warn_of_tools,
+    write_json, write_output,
 };
 use crate::assess::Verdict;
 use crate::formats::ReadOptions;
@@ -113,7 +113,8 @@ pub(super) struct MapValues {
     /// Layers of the crash elements, at most 100; from the section if not given.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = layers)]
     layers: Option<usize>,
-    /// Integration rule through the thickness of the crash elements; from the deck if not given.
+    /// Integration rule through the thickness of the crash elements; from the deck if not given. As in the solver,
+    /// more than ten layers are equally spaced whatever the rule, and two Lobatto layers are Gauss points.
     #[arg(long, value_enum)]
     rule: Option<RuleName>,
     /// Points in the plane of each layer; from the element formulation if not given.
@@ -223,6 +224,10 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     inputs.extend(stamped.iter().flat_map(LoadedPart::files));
     check_outputs(targets(&args.output), &inputs)?;
     check_order(&crash, &stamped)?;
+    let mut named = NamedFiles::default();
+    for path in args.stamped.iter().filter(|path| !named.is_new(path)) {
+        log::warn!("{} is named twice and mapped twice", path.display());
+    }
     check_shells(&crash, stamped.iter())?;
     // Where the work ends in an error, what the reader found may be the reason.
     let tell = |_: &anyhow::Error| warn_of_unread(std::iter::once(&whole).chain(&stamped));

@@ -1,6 +1,5 @@
 //! `shapematch map-car`: many stamped parts onto one crash model.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -11,7 +10,9 @@ use clap::{ArgAction, Args};
 use super::map::MapValues;
 use super::map_choices::{HandName, default_thickness};
 use super::of_each::{LengthFactors, StressFactors, of_file};
-use super::{check_outputs, json_target, print, progress, takes_stdout, write_json};
+use super::{
+    NamedFiles, UsageError, check_outputs, json_target, print, progress, takes_stdout, write_json,
+};
 use crate::formats::ReadOptions;
 use crate::pipeline::load::{LoadSettings, load, usual_selection};
 use crate::pipeline::map::DefaultThickness;
@@ -96,9 +97,12 @@ pub fn run(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         })
         .collect();
     let stamped = named_once(stamped);
-    make_folder(&args.out)?;
     let mut inputs = vec![args.car.clone()];
     inputs.extend(args.stamped.iter().cloned());
+    if let Some(pattern) = inputs.iter().find(|path| is_pattern(path)) {
+        return Err(UsageError(format!("no file matches {pattern:?}")).into());
+    }
+    make_folder(&args.out)?;
     check_outputs(targets(args, &stamped), &inputs)?;
     let crash = load(&args.car, &settings(Role::Crash, 1.0), &monitor)?;
     inputs.extend(crash.files());
@@ -139,16 +143,20 @@ pub fn run(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
 
 /// The files without those that stand for one named before, which would be mapped onto itself.
 fn named_once(files: Vec<StampedFile>) -> Vec<StampedFile> {
-    let mut known = BTreeSet::new();
+    let mut named = NamedFiles::default();
     let mut is_first = |file: &StampedFile| {
-        let place = file.path.canonicalize();
-        let is_first = known.insert(place.unwrap_or_else(|_| file.path.clone()));
+        let is_first = named.is_new(&file.path);
         if !is_first {
             log::warn!("{} is named twice and mapped once", file.path.display());
         }
         is_first
     };
     files.into_iter().filter(|file| is_first(file)).collect()
+}
+
+/// Whether a path is a pattern that the shell found no file for.
+fn is_pattern(path: &Path) -> bool {
+    path.to_string_lossy().contains(['*', '?']) && !path.exists()
 }
 
 /// Says that the decks in a folder are not of this run, if there are any.
@@ -164,6 +172,9 @@ fn left_behind(folder: &Path) -> String {
 fn make_folder(folder: &Path) -> anyhow::Result<()> {
     if folder.is_dir() {
         return Ok(());
+    }
+    if folder.exists() {
+        return Err(UsageError(format!("--out {folder:?} is a file, not a folder")).into());
     }
     std::fs::create_dir(folder)
         .with_context(|| format!("the folder {} cannot be made", folder.display()))

@@ -170,6 +170,9 @@ fn compared(other: &ComparisonRecord) -> Vec<(&'static str, String)> {
 }
 
 fn differing(found: &DifferenceRecord) -> String {
+    if found.max == 0.0 {
+        return format!("equal, mean {}", length(found.here.mean));
+    }
     format!(
         "mean {} (there {}), RMS difference {}, 95 % within {}, at most {} at element {}",
         length(found.here.mean),

@@ -11,7 +11,7 @@ use super::placing::warn_of_unit;
 use super::recipe::{Asked, asked};
 use super::{
     EXIT_POOR, EXIT_USAGE, UsageError, check_outputs, is_stdout, match_text, print, print_exactly,
-    progress, project, takes_stdout, warn_of_tools,
+    progress, project, warn_of_tools,
 };
 use crate::assess::Verdict;
 use crate::monitor::Monitor;
@@ -78,7 +78,8 @@ pub fn run(args: &MatchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let run = Arc::new(run);
     let record = match_record(&run, parts.as_deref());
     drop(shown);
-    if takes_stdout(args.output.json.as_deref()) {
+    let is_printing = !outputs.iter().any(|(_, path)| is_stdout(path));
+    if !is_printing {
         for warning in &record.warnings {
             log::warn!("{warning}");
         }
@@ -90,7 +91,6 @@ pub fn run(args: &MatchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         run: Some(Arc::clone(&run)),
         ..input
     };
-    let is_printing = !outputs.iter().any(|(_, path)| is_stdout(path));
     let mut is_complete = impossible.is_empty();
     for (output, path) in outputs {
         if impossible.contains(&output) {

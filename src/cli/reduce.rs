@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::args::ReduceArgs;
 use super::{check_outputs, json_target, print, progress, takes_stdout, write_json, write_output};
+use crate::formats::ReadOptions;
 use crate::pipeline::load::{LoadSettings, load, parse_selection};
 use crate::pipeline::outputs::deck::{format_of, mesh_bytes};
 use crate::pipeline::outputs::{Content, Target};
@@ -45,6 +46,10 @@ pub fn run(args: &ReduceArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         &args.input,
         &LoadSettings {
             selection,
+            read: ReadOptions {
+                include_folders: args.include_folder.clone(),
+                ..ReadOptions::default()
+            },
             ..LoadSettings::default()
         },
         &monitor,

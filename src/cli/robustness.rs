@@ -20,7 +20,8 @@ pub fn run(args: &BenchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let runs = robustness(&settings, &monitor, |_| {})?;
     drop(monitor);
     let table = RobustnessTable::new(settings.seed, &runs);
-    if !takes_stdout(args.json.as_deref()) {
+    let texts = [&args.json, &args.html];
+    if !texts.iter().any(|text| takes_stdout(text.as_deref())) {
         print(&describe(&table))?;
     }
     if let Some(path) = &args.json {

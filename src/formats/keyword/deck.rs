@@ -18,7 +18,7 @@ use super::include::{
 };
 use super::materials::read_material;
 use super::mesh::{ElementKeyword, ShellCards, element_keyword};
-use super::names::{is_known, probably_meant};
+use super::names::{is_known, probably_meant, shapes_parts};
 use super::parameter::ParameterTable;
 use super::parts::{read_parts, read_shell_control, read_shell_sections};
 use super::results::FormingCount;
@@ -179,6 +179,10 @@ impl Reader<'_> {
         if !name.is_empty() && !is_known(name) {
             self.tell_unknown(block);
         }
+        if shapes_parts(name) {
+            name_unsupported(block, &mut self.assembly.found);
+            return Ok(());
+        }
         let first_word = name.split('_').next().unwrap_or_default();
         match first_word {
             "INCLUDE" => self.include(file, block, context),
@@ -237,11 +241,7 @@ impl Reader<'_> {
                 |chunk, range| assembly.add_solids(chunk, origin.of(range)),
             ),
             ElementKeyword::Unknown => {
-                let message = format!("*{} is not known and is skipped", block.name);
-                let kind = DiagnosticKind::Unsupported;
-                assembly
-                    .found
-                    .push_with(kind, || block.diagnose(kind, message));
+                name_unsupported(block, &mut assembly.found);
                 Ok(())
             }
             ElementKeyword::Skipped if nodes::holds_nodes(&block.name) => chunks::read(
@@ -344,14 +344,10 @@ impl Reader<'_> {
                 let paths = read_paths(block).into_iter().map(|path| master.join(path));
                 self.search.folders.extend(paths);
             }
-            name => {
+            _ => {
                 let stamped = read_stamped_include(&with_parameters, &context.offsets);
                 self.assembly.stamped_includes.extend(stamped);
-                let kind = DiagnosticKind::Unsupported;
-                let message = format!("*{name} is not carried out");
-                self.assembly
-                    .found
-                    .push_with(kind, || block.diagnose(kind, message));
+                name_unsupported(block, &mut self.assembly.found);
             }
         }
         Ok(())
@@ -507,16 +503,24 @@ impl Reader<'_> {
         match recognise(&path, &bytes) {
             Ok(Format::Keyword) | Err(Foreign::Empty) => Ok((path, bytes)),
             Ok(format) => Err((
-                DiagnosticKind::Unsupported,
+                DiagnosticKind::MissingInclude,
                 format!("is {} and left out", format.label()),
             )),
             Err(Foreign::Text) if is_comment(&bytes) => Ok((path, bytes)),
             Err(foreign) => Err((
-                DiagnosticKind::Unsupported,
+                DiagnosticKind::MissingInclude,
                 format!("is {foreign}; {}", foreign.advice()),
             )),
         }
     }
+}
+
+/// Names a keyword that would change the mesh or its results.
+fn name_unsupported(block: &Block<'_>, found: &mut Diagnostics) {
+    let kind = DiagnosticKind::Unsupported;
+    found.push_with(kind, || {
+        block.diagnose(kind, format!("*{} is not carried out", block.name))
+    });
 }
 
 /// True if the cards of a mesh block are those of another layout; told once. Where one block

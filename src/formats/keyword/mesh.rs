@@ -62,7 +62,6 @@ const WITHOUT_SURFACE: &[&str] = &[
     "BLANKING",
     "DIRECT",
     "DISCRETE",
-    "GENERALIZED",
     "INERTIA",
     "INTERPOLATION",
     "LANCING",

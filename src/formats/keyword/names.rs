@@ -66,6 +66,17 @@ const FAMILIES: &[&str] = &[
     "USER",
 ];
 
+/// Keywords that make, move or thicken parts besides those that hold a mesh, with or without options.
+const SHAPING: &[&str] = &[
+    "DEFINE_FORMING_BLANKMESH",
+    "IGA_SHELL",
+    "PART_DUPLICATE",
+    "PART_MOVE",
+    "PART_STACKED_ELEMENTS",
+    "PERTURBATION_NODE",
+    "PERTURBATION_SHELL_THICKNESS",
+];
+
 /// The name of a keyword line without its `*`, in upper case; `None` if no letter follows.
 pub(crate) fn keyword_name(line: &[u8]) -> Option<String> {
     let line = line.trim_ascii_start();
@@ -83,6 +94,15 @@ fn family(name: &str) -> &str {
 /// True if LS-DYNA has keywords that begin so. `name` is in upper case, with or without options.
 pub(crate) fn is_known(name: &str) -> bool {
     FAMILIES.binary_search(&family(name)).is_ok()
+}
+
+/// True of a keyword without elements and nodes that changes the shape or the thickness of parts.
+pub(crate) fn shapes_parts(name: &str) -> bool {
+    let is_one = |known: &&str| {
+        let options = name.strip_prefix(*known);
+        options.is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
+    };
+    SHAPING.iter().any(is_one)
 }
 
 /// The known name that was probably meant, if one letter too many was written.
@@ -115,6 +135,8 @@ mod tests {
         assert_eq!(name("* text"), None);
         assert!(is_known("ELEMENT_SHELL") && is_known("END"));
         assert!(!is_known("NODES") && !is_known("HEADING"));
+        assert!(shapes_parts("PART_MOVE") && shapes_parts("IGA_SHELL_TITLE"));
+        assert!(!shapes_parts("PART") && !shapes_parts("PART_MOVED"));
         assert_eq!(probably_meant("NODES"), Some("NODE"));
         assert_eq!(probably_meant("HEADING"), None);
         // Of any length.
