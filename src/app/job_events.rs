@@ -292,7 +292,7 @@ fn step_of(key: JobKey) -> (LogStep, Option<Role>) {
         JobKey::MeasureLevel(role) => (LogStep::Measure, Some(role)),
         JobKey::Align => (LogStep::Align, None),
         JobKey::Match => (LogStep::Match, None),
-        JobKey::Verdict => (LogStep::Judge, None),
+        JobKey::Verdict => (LogStep::Verdict, None),
         JobKey::Measure | JobKey::Overlap => (LogStep::Measure, None),
         JobKey::Compare => (LogStep::Compare, None),
         JobKey::LoadFurther(_) => (LogStep::Load, Some(Role::Stamped)),

@@ -9,8 +9,6 @@ pub enum LogStep {
     Compare,
     /// A file is written.
     Export,
-    /// A match is judged anew.
-    Judge,
     /// A file is read.
     Load,
     /// Forming results are mapped.
@@ -41,6 +39,8 @@ pub enum LogStep {
     Undo,
     /// A unit is set.
     Units,
+    /// A match is judged anew.
+    Verdict,
     /// The pose is verified.
     Verify,
     /// The window has something to say.
@@ -54,7 +54,6 @@ impl LogStep {
             Self::Align => "align",
             Self::Compare => "compare",
             Self::Export => "export",
-            Self::Judge => "judge",
             Self::Load => "load",
             Self::Map => "map",
             Self::Match => "match",
@@ -70,6 +69,7 @@ impl LogStep {
             Self::Sweep => "sweep",
             Self::Undo => "undo",
             Self::Units => "units",
+            Self::Verdict => "verdict",
             Self::Verify => "verify",
             Self::Window => "window",
         }

@@ -60,7 +60,7 @@ impl MatchState {
         // A drag gives many verdicts; those that say the same need no row.
         if run.assessment.verdict != before {
             let line = facts::match_line(run, work.lengths());
-            work.log_step(LogStep::Judge, None, line, Some(took));
+            work.log_step(LogStep::Verdict, None, line, Some(took));
         }
     }
 }

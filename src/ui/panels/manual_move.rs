@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{Align, CollapsingHeader, Color32, Key, Layout, Modifiers, TextStyle, Ui, vec2};
+use egui::{CollapsingHeader, Color32, Key, Modifiers, TextStyle, Ui, vec2};
 
 use crate::app::{
     Action, AppState, Axis, AxisFrame, Command, MoveCommand, turns_deg, with_turns_deg,
@@ -160,7 +160,6 @@ fn position_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let moved: [f64; 3] = (center - pivot).into();
     let lengths = state.lengths();
     let unit = lengths.suffix();
-    heading_ui(ui, unit);
     for (name, what, values) in [
         ("Centre", "Centre", at),
         ("Translation", "Translation since loading,", moved),
@@ -197,30 +196,6 @@ fn position_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
-/// The axes over the three columns, and beside them the units of what stands in these.
-fn heading_ui(ui: &mut Ui, unit: &str) {
-    let units = match unit.trim() {
-        "" => "°".to_owned(),
-        unit => format!("{unit}, °"),
-    };
-    form_row(ui, &units, LABEL, |ui| {
-        tighten(ui);
-        let width = column_width(ui);
-        for axis in Axis::ALL {
-            let size = vec2(width, ui.text_style_height(&TextStyle::Small));
-            ui.allocate_ui_with_layout(size, Layout::top_down(Align::Center), |ui| {
-                ui.set_width(width);
-                caption(ui, axis.letter().to_string());
-            });
-        }
-    });
-}
-
-/// Width of one of three fields in a row.
-fn column_width(ui: &Ui) -> f32 {
-    (ui.available_width() - 8.0) / 3.0
-}
-
 fn set_pose(crash_from_stamped: Similarity, name: String) -> Command {
     MoveCommand::SetPose {
         crash_from_stamped,
@@ -242,7 +217,7 @@ fn fields_ui(
     form_row(ui, label, LABEL, |ui| {
         tighten(ui);
         ui.style_mut().drag_value_text_style = TextStyle::Small;
-        let width = column_width(ui);
+        let width = (ui.available_width() - 8.0) / 3.0;
         // As wide while it is typed in.
         ui.spacing_mut().interact_size.x = width;
         for axis in Axis::ALL {

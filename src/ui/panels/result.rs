@@ -1,12 +1,11 @@
 //! The verdict card and the matrix.
 
-use egui::{Button, Event, RichText, Ui, vec2};
+use egui::{Button, RichText, Ui, vec2};
 
 use super::explain;
-use super::section::unfolded;
 use crate::app::{Action, AppState, Command, ExportCommand, MatchCommand, MatchResult, Section};
 use crate::assess::{Ambiguity, Coverage, OneSided, Reason};
-use crate::jobs::{JobKey, Stamp};
+use crate::jobs::Stamp;
 use crate::registration::{group_starts, limits};
 use crate::report::distances::{OVERLAP_HELP, OVERLAP_SPREAD};
 use crate::report::{PoseRecord, few_agree_words, number, start_counts};
@@ -25,12 +24,11 @@ use crate::ui::widgets::{
 /// Verdict, figures, alternatives, matrix.
 pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     explain::failure_ui(ui, state, commands);
-    let top = ui.cursor().top();
     let Some(result) = &state.document.result else {
-        InSight::keep(ui, state, top);
         return;
     };
     ui.add_space(2.0);
+    let top = ui.cursor().top();
     let held = HeldHeight::read(ui);
     card(ui, |ui| {
         let first = ui.cursor().top();
@@ -50,71 +48,17 @@ pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
         held.hold(ui, first);
     });
-    InSight::keep(ui, state, top);
-    matrix_ui(ui, state, commands);
-}
-
-/// A new result comes into sight by itself, and stays there while the sections around it are arranged: until the
-/// user scrolls in the column or does something. Not where the user scrolled while the match ran.
-#[derive(Debug, Clone, Copy, Default)]
-struct InSight {
-    stamp: Option<Stamp>,
-    /// The sections that are unfolded; as they change, the result moves.
-    unfolded: [bool; 4],
-    is_running: bool,
-    has_scrolled: bool,
-    is_kept: bool,
-    /// Frames until it stands still.
-    n_left: u8,
-}
-
-/// Frames after which the sections stand still.
-const SETTLING: u8 = 10;
-
-impl InSight {
-    fn keep(ui: &Ui, state: &AppState, top: f32) {
-        let id = egui::Id::unique("result in sight");
-        let before: Self = ui.data(|data| data.get_temp(id)).unwrap_or_default();
-        let stamp = state.document.result.as_ref().map(|result| result.stamp);
-        let is_in_column = ui.rect_contains_pointer(ui.clip_rect());
-        let (is_scrolling, is_pressed) = ui.input(|input| {
-            let is_scrolling = input.smooth_scroll_delta().y != 0.0;
-            // Keys and screen readers may lead elsewhere too.
-            let mut events = input.events.iter();
-            let is_led = events.any(|event| {
-                let is_key = matches!(event, Event::Key { pressed: true, .. });
-                is_key || matches!(event, Event::AccessKitActionRequest(_))
-            });
-            let is_pressed = is_led || is_in_column && input.pointer.any_pressed();
-            (is_scrolling && is_in_column, is_pressed)
-        });
-        let mut now = Self {
-            stamp,
-            unfolded: unfolded(ui),
-            is_running: state.jobs.is_active(JobKey::Match),
-            is_kept: before.is_kept && !is_scrolling && !is_pressed,
-            n_left: before.n_left.saturating_sub(1),
-            ..before
-        };
-        if now.is_running {
-            now.has_scrolled = is_scrolling || before.is_running && before.has_scrolled;
-        }
-        let is_arranged = now.unfolded != before.unfolded;
-        if stamp != before.stamp {
-            now.is_kept = !now.has_scrolled;
-            now.has_scrolled = false;
-            now.n_left = SETTLING;
-        } else if is_arranged && state.view.sections.in_use() == Section::Match {
-            now.n_left = SETTLING;
-        }
-        ui.data_mut(|data| data.insert_temp(id, now));
-        if stamp.is_some() && now.is_kept && now.n_left > 0 {
-            // Of a card that is higher than the column its beginning, with the verdict.
-            let bottom = (ui.cursor().top() + 3.0 * ROW).min(top + ui.clip_rect().height());
-            let x = ui.max_rect().x_range();
-            ui.scroll_to_rect(egui::Rect::from_x_y_ranges(x, top..=bottom), None);
-        }
+    // A new result comes into sight by itself.
+    let id = egui::Id::unique("stamp of the result in sight");
+    let seen: Option<Stamp> = ui.data(|data| data.get_temp(id));
+    if seen != Some(result.stamp) {
+        ui.data_mut(|data| data.insert_temp(id, result.stamp));
+        // Of a card that is higher than the column its beginning, with the verdict.
+        let bottom = (ui.cursor().top() + 3.0 * ROW).min(top + ui.clip_rect().height());
+        let x = ui.max_rect().x_range();
+        ui.scroll_to_rect(egui::Rect::from_x_y_ranges(x, top..=bottom), None);
     }
+    matrix_ui(ui, state, commands);
 }
 
 /// A pose made by hand is worth copying too. It stands below what the part is moved with, so that the first move

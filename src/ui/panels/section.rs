@@ -120,11 +120,6 @@ impl Fold {
     }
 }
 
-/// Which sections are unfolded in this frame.
-pub fn unfolded(ui: &Ui) -> [bool; 4] {
-    Fold::read(ui).shown
-}
-
 /// To be called after the sections are drawn.
 pub fn drawn_ui(ui: &Ui, state: &AppState) {
     let parts = state.document.stamp().parts;
@@ -145,18 +140,16 @@ pub fn drawn_ui(ui: &Ui, state: &AppState) {
 
 /// Decides which sections are unfolded in a column of this height; before the sections are drawn. They
 /// fold for want of room only after a main step, until the user works in the column or does something else, and
-/// again when its height changes. Nothing that a click may be meant for moves away from under the pointer.
+/// again when its height changes.
 pub fn fold_ui(ui: &Ui, state: &AppState, height: f32) {
     let before = Fold::read(ui);
     let room = height - TALL * Section::ALL.len() as f32;
     let is_resized = (height - before.height).abs() > 0.5;
     let is_used = before.is_used && !is_resized;
     let sections = &state.view.sections;
-    let is_at_work = state.document.result.is_some() || state.jobs.locking_job().is_some();
-    let is_aimed_at = is_at_work && (ui.rect_contains_pointer(ui.clip_rect()) || is_any_down(ui));
     let shown = if !sections.is_arranging() && !is_resized {
         sections.held(before.shown)
-    } else if is_used || (is_aimed_at && !is_resized) {
+    } else if is_used {
         sections.kept(before.bodies, room, before.shown)
     } else {
         sections.shown(before.bodies, room, before.shown)
@@ -171,10 +164,6 @@ pub fn fold_ui(ui: &Ui, state: &AppState, height: f32) {
     if shown != before.shown {
         ui.ctx().request_repaint();
     }
-}
-
-fn is_any_down(ui: &Ui) -> bool {
-    ui.input(|input| input.pointer.any_down())
 }
 
 /// Draws the header; true if it was clicked.
