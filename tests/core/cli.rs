@@ -125,6 +125,18 @@ fn the_bundled_pair_is_matched_and_everything_is_written() {
 }
 
 #[test]
+fn a_text_on_standard_output_is_not_mixed_with_the_summary() {
+    let pair = Pair::bundled();
+    let matrix = pair.run(&["-q", "--matrix", "-"]);
+    let rows = text(&matrix.stdout)
+        .lines()
+        .filter(|line| !line.starts_with('#'));
+    assert_eq!(rows.flat_map(str::split_whitespace).count(), 16);
+    let cards = pair.run(&["-q", "--cards", "-"]);
+    assert!(text(&cards.stdout).starts_with(['$', '*']));
+}
+
+#[test]
 fn the_record_has_its_keys() {
     let pair = Pair::bundled();
     let output = pair.run(&["--json", "-"]);
