@@ -116,7 +116,7 @@ impl Reason {
                 p95,
                 rivals_sought,
             } => format!(
-                "{} of the smaller part lies face to face, 95 % of the overlap lies within {}, and {}",
+                "{} of the smaller part has a counterpart, 95 % of the overlap lies within {}, and {}",
                 percent(*overlap),
                 lengths.of(*p95),
                 if *rivals_sought {
@@ -224,7 +224,7 @@ impl ShapeReason {
         match self {
             Self::HardlyMet { share } => {
                 format!(
-                    "only {} of the smaller part lies face to face",
+                    "only {} of the smaller part has a counterpart",
                     percent(*share)
                 )
             }
