@@ -1,9 +1,9 @@
 //! The evidence of a pose: where the surfaces and the borders of two parts meet under it. The search for it is
 //! prepared once and asked for one pose after another.
 
-use super::borders::{BorderComparison, Borders};
 use nalgebra::SMatrix;
 
+use super::borders::{BorderComparison, Borders};
 use super::contact::{Contact, ContactSearch, Contacts, MAX_NODES, Six, solve};
 use super::tolerance::Distances;
 use crate::geometry::{Point3, Similarity};
