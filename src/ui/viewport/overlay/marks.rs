@@ -126,13 +126,17 @@ fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32, legend: Option<Rec
             painter.layout_job(job)
         };
         let mut galley = lay(text.clone(), READOUT_ROWS);
-        let widest = pieces.iter().map(|piece| {
-            let laid = painter.layout_no_wrap(piece.clone(), font.clone(), color);
-            laid.size().x
+        let coordinates = pieces.iter().flat_map(|piece| piece.split_inclusive(", "));
+        let widths = coordinates.map(|text| {
+            let galley = painter.layout_no_wrap(text.to_owned(), font.clone(), color);
+            galley.size().x
         });
-        if galley.elided || widest.fold(0.0, f32::max) > room {
-            // Too narrow for a place: better broken between its words than within one, or cut.
+        if widths.fold(0.0, f32::max) > room {
+            // Better broken between any two words than within one.
             galley = lay(text.replace('\u{a0}', " "), 2 * READOUT_ROWS);
+        } else if galley.elided {
+            // Too narrow for a place: better broken than cut.
+            galley = lay(text.replace(",\u{a0}", ", "), 2 * READOUT_ROWS);
         }
         let size = galley.size() + vec2(14.0, 8.0);
         let mut corner = Pos2::new(right, window.bottom()) - Vec2::splat(MARGIN) - size;
