@@ -13,7 +13,7 @@ use crate::registration::Surface;
 pub(crate) struct PoseEvidence<'a> {
     pub(crate) source: &'a Surface,
     pub(super) target: &'a Surface,
-    pub(super) pose: Similarity,
+    pub(crate) pose: Similarity,
     pub(crate) contacts: Contacts,
     pub(crate) borders: Borders,
     /// Faceting of both meshes.

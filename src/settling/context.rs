@@ -2,6 +2,7 @@
 
 use crate::assess::borders::BorderComparison;
 use crate::assess::contact::ContactSearch;
+use crate::assess::evidence::{EvidenceSearch, PoseEvidence};
 use crate::assess::statements::{Outlines, shape_statement};
 use crate::assess::tolerance::Distances;
 use crate::assess::{AssessSettings, ShapeStatement};
@@ -68,5 +69,30 @@ impl<'a> PairContext<'a> {
     /// The statement about the shape under a pose.
     pub(super) fn shape(&self, pose: &Similarity, outlines: Outlines) -> ShapeStatement {
         shape_statement(self.surfaces(), pose, self.settings, outlines)
+    }
+
+    /// A pose moved step by step: `next` gives the next pose, and the motion that is none any more. It ends there, where
+    /// the parts meet nowhere or there is no next pose, or after so many steps.
+    /// O(steps · (border edges + nodes · log triangles)).
+    pub(super) fn stepped(
+        &self,
+        search: &mut EvidenceSearch<'_, '_>,
+        first: &Similarity,
+        n_steps: usize,
+        mut next: impl FnMut(&mut PoseEvidence<'_>) -> Option<(Similarity, f64)>,
+    ) -> Result<Similarity, Cancelled> {
+        let mut pose = *first;
+        for _ in 0..n_steps {
+            self.check()?;
+            let Some((moved, still)) = search.at(&pose).and_then(|mut met| next(&mut met)) else {
+                break;
+            };
+            let by = self.displacement(&moved, &pose);
+            pose = moved;
+            if by <= still {
+                break;
+            }
+        }
+        Ok(pose)
     }
 }

@@ -148,22 +148,10 @@ fn held_by_holes(
     farthest: f64,
 ) -> Result<Similarity, Cancelled> {
     let still = STILL * context.distances(1.0).tolerance.remainder;
-    let mut pose = *first;
-    for _ in 0..STEPS {
-        context.check()?;
-        let Some(mut evidence) = search.at(&pose) else {
-            break;
-        };
+    context.stepped(&mut search, first, STEPS, |evidence| {
         evidence.borders = evidence.borders.of_holes();
-        let next = Fit::of(&evidence).corrected(&evidence);
-        let step = context.displacement(&next, &pose);
-        if step > farthest {
-            break;
-        }
-        pose = next;
-        if step < still {
-            break;
-        }
-    }
-    Ok(pose)
+        let next = Fit::of(evidence).corrected(evidence);
+        let is_near = context.displacement(&next, &evidence.pose) <= farthest;
+        is_near.then_some((next, still))
+    })
 }

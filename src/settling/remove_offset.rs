@@ -25,27 +25,15 @@ pub fn without_offset(
     let contacts = context.contacts(pose.scale, distances.reach, MAX_NODES);
     let borders = context.borders(pose.scale, distances.border_reach);
     let mut search = EvidenceSearch::new(contacts, &borders, &distances);
-    let mut moved = *pose;
-    let mut offset = 0.0;
-    for _ in 0..STEPS {
-        context.check()?;
-        let Some(evidence) = search.at(&moved) else {
-            return Ok(None);
-        };
-        let fit = Fit::of(&evidence);
-        let Some(separate) = fit.separate_offset() else {
-            return Ok(None);
-        };
-        offset = separate;
-        let next = fit.corrected(&evidence);
-        let step = context.displacement(&next, &moved);
-        moved = next;
-        if step <= STILL * offset.abs() {
-            break;
-        }
-    }
+    let mut offset = None;
+    let moved = context.stepped(&mut search, pose, STEPS, |evidence| {
+        let fit = Fit::of(evidence);
+        offset = fit.separate_offset();
+        Some((fit.corrected(evidence), STILL * offset?.abs()))
+    })?;
     let far = context.displacement(&moved, pose);
-    let is_of_an_offset =
-        offset.abs() > FACETING * distances.noise && far <= FARTHEST * offset.abs();
+    let is_of_an_offset = offset.is_some_and(|offset| {
+        offset.abs() > FACETING * distances.noise && far <= FARTHEST * offset.abs()
+    });
     Ok(is_of_an_offset.then_some(moved))
 }

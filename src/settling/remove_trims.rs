@@ -46,56 +46,32 @@ pub fn without_trims(
         return Ok(None);
     }
     let little = LITTLE_GAP * tolerance.remainder;
-    let by_holes = |evidence: &mut PoseEvidence<'_>| {
+    let fit_by_holes = |evidence: &mut PoseEvidence<'_>| {
         evidence.borders = match trims::other_trim(evidence, &tolerance) {
             Some(other) => other.left,
             None => evidence.borders.of_holes(),
         };
-        Fit::of(evidence).corrected(evidence)
+        Fit::of(evidence)
     };
     let still = STILL * tolerance.remainder;
-    let Some(moved) = followed(context, &mut search, (pose, still), by_holes)? else {
-        return Ok(None);
-    };
-    let Some(mut evidence) = search.at(&moved) else {
-        return Ok(None);
-    };
+    let moved = context.stepped(&mut search, pose, STEPS, |evidence| {
+        Some((fit_by_holes(evidence).corrected(evidence), still))
+    })?;
     let is_near = context.displacement(&moved, pose) <= distances.border_reach;
-    if !is_near || !Fitted::of(&evidence).is_closer_than(&before, little) {
+    let evidence = search.at(&moved).filter(|_| is_near);
+    let is_closer = |met: &PoseEvidence<'_>| Fitted::of(met).is_closer_than(&before, little);
+    let Some(mut evidence) = evidence.filter(is_closer) else {
         return Ok(None);
-    }
-    by_holes(&mut evidence);
-    let left = left_with_beads(&evidence, &Fit::of(&evidence));
-    let by_surfaces = |evidence: &mut PoseEvidence<'_>| evidence.closer_surfaces();
-    let alone = followed(context, &mut search, (&moved, still), by_surfaces)?;
-    let alone = alone.and_then(|pose| search.at(&pose));
-    let say_otherwise = alone.is_some_and(|evidence| {
+    };
+    let fit = fit_by_holes(&mut evidence);
+    let left = left_with_beads(&evidence, &fit);
+    let alone = context.stepped(&mut search, &moved, STEPS, |evidence| {
+        Some((evidence.closer_surfaces(), still))
+    })?;
+    let say_otherwise = search.at(&alone).is_some_and(|evidence| {
         left_with_beads(&evidence, &Fit::of_surfaces(&evidence)) + little < left
     });
     Ok((!say_otherwise).then_some(moved))
-}
-
-/// The pose moved step by step until it moves by no more than `still`; `None` where the parts come to meet nowhere.
-fn followed<'a>(
-    context: &PairContext<'a>,
-    search: &mut EvidenceSearch<'a, '_>,
-    (pose, still): (&Similarity, f64),
-    mut step: impl FnMut(&mut PoseEvidence<'_>) -> Similarity,
-) -> Result<Option<Similarity>, Cancelled> {
-    let mut moved = *pose;
-    for _ in 0..STEPS {
-        context.check()?;
-        let Some(mut evidence) = search.at(&moved) else {
-            return Ok(None);
-        };
-        let next = step(&mut evidence);
-        let by = context.displacement(&next, &moved);
-        moved = next;
-        if by <= still {
-            break;
-        }
-    }
-    Ok(Some(moved))
 }
 
 /// What a fit leaves of the distances of the surfaces on all but a small share of them.
