@@ -2,7 +2,7 @@
 //! percent longer than its counterpart fits its surface well and misses its borders.
 
 use super::border_curve::{BorderCurve, Place, along, curves_of, ragged};
-use super::contact::{quantile, robust_weights};
+use super::least_squares::{quantile, robust_weights};
 use super::tolerance::{ShapeTolerance, is_source_smaller};
 use crate::geometry::{Point3, Similarity, Vector3};
 use crate::registration::Surface;

@@ -3,10 +3,11 @@
 
 mod displaced;
 
-use nalgebra::{SMatrix, SVector, SymmetricEigen};
+use nalgebra::SVector;
 use rayon::iter::Either;
 use rayon::prelude::*;
 
+use super::least_squares::quantile;
 use super::scaled::Scaled;
 use super::tolerance::is_source_smaller;
 use crate::geometry::{Point3, Rotation, Similarity, Vector3};
@@ -19,8 +20,6 @@ pub(crate) const MAX_NODES: usize = 8000;
 pub(crate) const FEW_NODES: usize = 2000;
 /// Surfaces that turn away from each other by more than this do not lie on each other: cosine of 50°.
 const MIN_FACING: f64 = 0.64;
-/// Motions that meet less than this share of the resistance of the stiffest are left alone.
-const RANK: f64 = 1e-7;
 
 /// A place of the smaller part beside the other part, in the target's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -366,23 +365,6 @@ fn is_beside(model: &Surface, hit: &SurfaceHit, point: &Point3) -> bool {
     (away - normal * away.dot(&normal)).norm() > 0.5 * away.norm()
 }
 
-/// A weight for each value: its area, less the farther the value lies from nothing (Tukey's biweight
-/// about the median distance). `floor` is a distance that means nothing.
-pub(super) fn robust_weights(values: &[f64], areas: &[f64], floor: f64) -> Vec<f64> {
-    let sizes = values.iter().map(|v| v.abs()).zip(areas.iter().copied());
-    let median = quantile(&mut sizes.collect::<Vec<_>>(), 0.5);
-    let cut = 4.7 * (1.48 * median).max(floor).max(f64::MIN_POSITIVE);
-    let weight = |(value, area): (&f64, &f64)| {
-        let ratio = value / cut;
-        if ratio.abs() < 1.0 {
-            area * (1.0 - ratio * ratio).powi(2)
-        } else {
-            0.0
-        }
-    };
-    values.iter().zip(areas).map(weight).collect()
-}
-
 /// How far a facet may lie off the smooth surface it stands for, whose normal here is `normal`: the
 /// sagitta of an arc over its longest edge that turns by twice the angle between both normals.
 fn facet_error(model: &Surface, triangle: usize, normal: &Vector3) -> f64 {
@@ -395,86 +377,4 @@ fn facet_error(model: &Surface, triangle: usize, normal: &Vector3) -> f64 {
         .chain([normal])
         .map(|n| facet.dot(n).abs());
     longest * cos.fold(1.0, f64::min).acos() / 4.0
-}
-
-/// Weighted quantile; reorders. 0 without values. O(values).
-pub(crate) fn quantile(values: &mut [(f64, f64)], share: f64) -> f64 {
-    let weight_of = |values: &[(f64, f64)]| values.iter().map(|(_, weight)| weight).sum::<f64>();
-    let mut wanted = share * weight_of(values);
-    let mut rest = values;
-    while !rest.is_empty() {
-        let by_value =
-            |a: &(f64, f64), b: &(f64, f64)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
-        let (below, &mut (value, weight), above) =
-            rest.select_nth_unstable_by(rest.len() / 2, by_value);
-        let weight_below = weight_of(below);
-        if weight_below >= wanted && !below.is_empty() {
-            rest = below;
-        } else if weight_below + weight >= wanted || above.is_empty() {
-            return value;
-        } else {
-            wanted -= weight_below + weight;
-            rest = above;
-        }
-    }
-    0.0
-}
-
-/// Least squares over `N` unknowns; directions that the rows do not fix stay zero.
-pub(crate) fn solve<const N: usize>(
-    matrix: &SMatrix<f64, N, N>,
-    right: &SVector<f64, N>,
-) -> SVector<f64, N> {
-    let mut solution = SVector::<f64, N>::zeros();
-    if !matrix.iter().chain(right.iter()).all(|x| x.is_finite()) {
-        return solution;
-    }
-    // The decomposition of a fixed size has bounds that a const parameter cannot meet.
-    let eigen = SymmetricEigen::new(nalgebra::DMatrix::from_iterator(
-        N,
-        N,
-        matrix.iter().copied(),
-    ));
-    let stiffest = eigen.eigenvalues.max();
-    for (value, vector) in eigen
-        .eigenvalues
-        .iter()
-        .zip(eigen.eigenvectors.column_iter())
-    {
-        if *value > RANK * stiffest {
-            let along: f64 = vector.iter().zip(right.iter()).map(|(a, b)| a * b).sum();
-            for (x, v) in solution.iter_mut().zip(vector.iter()) {
-                *x += v * along / value;
-            }
-        }
-    }
-    solution
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_weighted_quantile_is_that_of_the_sorted_values() {
-        for n in 1..40 {
-            // Whole weights, so that sums do not depend on their order; some values and weights repeat.
-            let values: Vec<(f64, f64)> = (0..n)
-                .map(|i| (f64::from(i * 17 % 11), f64::from(i * 7 % 5)))
-                .collect();
-            let mut sorted = values.clone();
-            sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-            let total: f64 = values.iter().map(|(_, weight)| weight).sum();
-            for share in [0.0, 0.25, 0.5, 0.75, 0.9, 1.0] {
-                let mut below = 0.0;
-                let expected = sorted.iter().find(|(_, weight)| {
-                    below += weight;
-                    below >= share * total
-                });
-                let found = quantile(&mut values.clone(), share);
-                assert_eq!(found, expected.unwrap().0, "{share} of {n}");
-            }
-        }
-        assert_eq!(quantile(&mut [], 0.5), 0.0);
-    }
 }

@@ -1,10 +1,9 @@
 //! The evidence of a pose: where the surfaces and the borders of two parts meet under it. The search for it is
 //! prepared once and asked for one pose after another.
 
-use nalgebra::SMatrix;
-
 use super::borders::{BorderComparison, Borders};
-use super::contact::{Contact, ContactSearch, Contacts, MAX_NODES, Six, solve};
+use super::contact::{Contact, ContactSearch, Contacts, MAX_NODES};
+use super::least_squares::NormalEquations;
 use super::tolerance::Distances;
 use crate::geometry::{Point3, Similarity};
 use crate::registration::Surface;
@@ -29,14 +28,13 @@ impl PoseEvidence<'_> {
     /// far apart counts in full, as beads do beside the smooth rest. O(places).
     pub(crate) fn closer_surfaces(&self) -> Similarity {
         let contacts = &self.contacts;
-        let (mut matrix, mut right) = (SMatrix::<f64, 6, 6>::zeros(), Six::zeros());
+        let mut equations = NormalEquations::<6>::default();
         let gaps = contacts.without_offset(f64::INFINITY);
         for (contact, gap) in contacts.list.iter().zip(gaps) {
             let row = contacts.row(&contact.point, &contact.normal);
-            matrix.ger(contact.weight, &row, &row, 1.0);
-            right += row * (contact.weight * gap);
+            equations.add(&row, gap, contact.weight);
         }
-        contacts.undo(&solve(&matrix, &right)).after(&self.pose)
+        contacts.undo(&equations.solved()).after(&self.pose)
     }
 
     /// Share of the smaller part's area that lies beyond the borders of the other.

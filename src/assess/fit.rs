@@ -4,13 +4,13 @@ mod bends;
 mod equations;
 
 use super::borders::PairKind;
-use super::contact::{Contact, Contacts, Six, robust_weights, solve};
+use super::contact::{Contact, Contacts, Six};
 use super::evidence::PoseEvidence;
+use super::least_squares::{NormalEquations, robust_weights};
 use crate::geometry::{Point3, Similarity, Vector3};
 
 pub(super) use bends::Bends;
 use bends::N_BENDS;
-use equations::{Equations, own_share};
 pub(super) use equations::{N_SMOOTH, Row};
 
 /// Times that places far off the fit are given less weight.
@@ -142,19 +142,19 @@ impl Fit {
                 left = contacts.list.iter().map(|c| c.gap).collect();
             }
             let weights = robust_weights(&left, &areas, evidence.noise);
-            let mut equations = Equations::default();
+            let mut equations = NormalEquations::<N_SMOOTH>::default();
             for ((row, contact), weight) in places.iter().zip(&contacts.list).zip(weights) {
                 equations.add(row, contact.gap, weight);
             }
             for ((row, pair), weight) in beside.iter().zip(borders.pairs()).zip(border_weights) {
                 equations.add(row, pair.gap, *weight);
             }
-            is_separable = own_share(&equations.matrix) > LEAST_OWN;
+            is_separable = equations.imitated(6).own_share > LEAST_OWN;
             if !is_separable || !has_offset {
                 // The shift of the rigid motion takes it.
-                equations.leave_out(6);
+                equations.leave_out(6..7);
             }
-            found = solve(&equations.matrix, &equations.right);
+            found = equations.solved();
             for ((left, row), contact) in left.iter_mut().zip(&places).zip(&contacts.list) {
                 *left = contact.gap - row.dot(&found);
             }

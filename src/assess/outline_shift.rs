@@ -1,11 +1,9 @@
 //! Do outlines and holes say the same of where a part belongs? The holes of one version may all lie farther along than
 //! those of another, and where the surfaces leave the part free to slide, the pose follows them.
 
-use nalgebra::Matrix3;
-
 use super::borders::{BorderPair, Borders, PairKind};
-use super::contact::solve;
 use super::fit::Fit;
+use super::least_squares::NormalEquations;
 use super::trims::BorderApart;
 use crate::geometry::{Point3, Vector3};
 
@@ -53,12 +51,11 @@ impl<'a> Outline<'a> {
 
     /// The shift that brings both outlines closest together, in least squares.
     fn shift(&self) -> Vector3 {
-        let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
+        let mut equations = NormalEquations::<3>::default();
         for (pair, left) in &self.0 {
-            matrix.ger(pair.weight, &pair.across, &pair.across, 1.0);
-            right += pair.across * (pair.weight * left);
+            equations.add(&pair.across, *left, pair.weight);
         }
-        solve(&matrix, &right)
+        equations.solved()
     }
 
     /// Whether the shift leaves little of how far the outlines lie apart.

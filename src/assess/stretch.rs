@@ -3,15 +3,14 @@
 //! Such parts lie on each other within the tolerance where the surface is smooth, and their borders look
 //! like those of another trim. Stretched back, all of it fits much better, which no trim does.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
 use super::borders::{BorderPair, HolePair, LEAST_PAIRED, PairKind};
-use super::contact::{
-    Contact, ContactSearch, Contacts, MAX_NODES, Six, quantile, robust_weights, solve,
-};
+use super::contact::{Contact, ContactSearch, Contacts, MAX_NODES, Six};
 use super::evidence::PoseEvidence;
 use super::fit::{Bends, N_SMOOTH, explaining};
+use super::least_squares::{NormalEquations, quantile, robust_weights};
 use super::scaled::Scaled;
 use super::tolerance::{ShapeTolerance, UNREMARKABLE};
 use crate::geometry::{Point3, Similarity, Vector3};
@@ -197,18 +196,14 @@ impl Frame {
         let mut left = left_by(&found);
         for _ in 0..ROUNDS {
             let weights = robust_weights(&left, &lengths, floor);
-            let mut matrix = SMatrix::<f64, N_PLACED, N_PLACED>::zeros();
-            let mut right = Placed::zeros();
+            let mut equations = NormalEquations::<N_PLACED>::default();
             for ((row, left), weight) in rows.iter().zip(&left).zip(weights) {
-                matrix.ger(weight, row, row, 1.0);
-                right += row * (weight * left);
+                equations.add(row, *left, weight);
             }
             if stretches.is_some() {
-                matrix.rows_mut(6, 3).fill(0.0);
-                matrix.columns_mut(6, 3).fill(0.0);
-                right.rows_mut(6, 3).fill(0.0);
+                equations.leave_out(6..N_PLACED);
             }
-            found += solve(&matrix, &right);
+            found += equations.solved();
             left = left_by(&found);
         }
         OutlineFit {
@@ -321,16 +316,12 @@ impl Gaps {
         let mut found = Row::zeros();
         for _ in 0..2 {
             let weights = robust_weights(&left, &self.areas, noise);
-            let mut matrix = SMatrix::<f64, N, N>::zeros();
-            let mut right = Row::zeros();
+            let mut equations = NormalEquations::<N>::default();
             for ((row, gap), weight) in self.rows.iter().zip(&self.sizes).zip(weights) {
-                matrix.ger(weight, row, row, 1.0);
-                right += row * (weight * gap);
+                equations.add(row, *gap, weight);
             }
-            matrix.rows_mut(n, N - n).fill(0.0);
-            matrix.columns_mut(n, N - n).fill(0.0);
-            right.rows_mut(n, N - n).fill(0.0);
-            found = solve(&matrix, &right);
+            equations.leave_out(n..N);
+            found = equations.solved();
             for ((left, row), gap) in left.iter_mut().zip(&self.rows).zip(&self.sizes) {
                 *left = gap - row.dot(&found);
             }

@@ -4,9 +4,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::borders::{BorderPair, Borders, HOLES_THAT_HOLD, PairKind};
-use super::contact::quantile;
 use super::evidence::PoseEvidence;
 use super::fit::Fit;
+use super::least_squares::quantile;
 use super::outline_shift::outline_aside_of_holes;
 use super::stretch;
 use super::tolerance::{ShapeTolerance, UNREMARKABLE};

@@ -4,9 +4,10 @@ use nalgebra::{SMatrix, SVector, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
 use super::borders::Borders;
-use super::contact::{Contacts, Six, robust_weights, solve};
+use super::contact::{Contacts, Six};
 use super::evidence::PoseEvidence;
 use super::fit::{Fit, LEAST_OWN};
+use super::least_squares::{Imitated, NormalEquations, robust_weights};
 use crate::geometry::serial::{any_float, xyz};
 use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
 use crate::registration::Surface;
@@ -190,66 +191,31 @@ fn along(source: &Surface, pose: &Similarity, direction: &Vector3) -> PartDirect
 /// A small motion, and an offset of the sheets along their normals.
 type Seven = SVector<f64, 7>;
 
-/// Normal equations of the whole and of every patch.
-#[derive(Clone)]
-struct NormalEquations {
-    matrix: SMatrix<f64, 7, 7>,
-    right: Seven,
+/// The evidence of the whole or of a patch about a motion and an offset.
+#[derive(Clone, Default)]
+struct PatchEquations {
+    equations: NormalEquations<7>,
     /// Squares of the gaps.
     squares: f64,
 }
 
-impl NormalEquations {
-    fn none() -> Self {
-        Self {
-            matrix: SMatrix::zeros(),
-            right: Seven::zeros(),
-            squares: 0.0,
-        }
-    }
-
-    /// `offset` is what an offset of one does to the gap.
+impl PatchEquations {
+    /// `offset` is what an offset of one does to the gap, which the solution is to close.
     fn add(&mut self, six: &Six, offset: f64, gap: f64, weight: f64) {
-        let row = six.push(offset);
-        self.matrix += row * row.transpose() * weight;
-        self.right -= row * (gap * weight);
+        self.equations
+            .add_symmetric(&six.push(offset), -gap, weight);
         self.squares += weight * gap * gap;
-    }
-
-    fn without(&self, part: &Self) -> Self {
-        Self {
-            matrix: self.matrix - part.matrix,
-            right: self.right - part.right,
-            squares: self.squares - part.squares,
-        }
     }
 
     /// The evidence about the motion alone.
     fn without_offset(mut self) -> Self {
-        self.matrix.row_mut(6).fill(0.0);
-        self.matrix.column_mut(6).fill(0.0);
-        self.right[6] = 0.0;
+        self.equations.leave_out(6..7);
         self
-    }
-
-    fn solved(&self) -> Seven {
-        solve(&self.matrix, &self.right)
     }
 
     /// Squares of what a solution leaves of the gaps.
     fn left(&self, solution: &Seven) -> f64 {
-        self.squares - self.right.dot(solution)
-    }
-
-    /// The motion that comes closest to an offset of one, and the share of the offset that it leaves.
-    fn offset_as_motion(&self) -> (Seven, f64) {
-        let whole = self.matrix[(6, 6)];
-        let mut mixed: Seven = self.matrix.column(6).into();
-        mixed[6] = 0.0;
-        let others = self.clone().without_offset();
-        let motion = solve(&others.matrix, &mixed);
-        let own = whole - mixed.dot(&motion);
-        (motion, own / whole.max(f64::MIN_POSITIVE))
+        self.squares - self.equations.right.dot(solution)
     }
 }
 
@@ -273,15 +239,17 @@ fn replicates(evidence: &PoseEvidence<'_>, unbent: Option<Six>) -> (Vec<Six>, Op
     let areas: Vec<f64> = contacts.list.iter().map(|c| c.weight).collect();
     let weights = robust_weights(&gaps, &areas, noise);
     let parts = equations_of_patches(contacts, &evidence.borders, &weights, noise);
-    let mut all = NormalEquations::none();
+    let mut all = PatchEquations::default();
     for part in &parts {
-        all.matrix += part.matrix;
-        all.right += part.right;
+        all.equations += &part.equations;
         all.squares += part.squares;
     }
     let motion_alone = all.clone().without_offset();
-    let (plain, with_offset) = (motion_alone.solved(), all.solved());
-    let (offset_as_motion, own_share) = all.offset_as_motion();
+    let (plain, with_offset) = (motion_alone.equations.solved(), all.equations.solved());
+    let Imitated {
+        by: offset_as_motion,
+        own_share,
+    } = all.equations.imitated(6);
     let is_separable = own_share > LEAST_OWN;
     let has_offset = is_separable && with_offset[6].abs() > 3.0 * noise;
     let is_offset =
@@ -307,7 +275,8 @@ fn replicates(evidence: &PoseEvidence<'_>, unbent: Option<Six>) -> (Vec<Six>, Op
             } else {
                 part.without_offset()
             };
-            six((all.without(&part).solved() - whole) * ((n - 1.0) / n).sqrt())
+            let others = &all.equations - &part.equations;
+            six((others.solved() - whole) * ((n - 1.0) / n).sqrt())
         })
         .collect();
     // Nobody knows whether an offset or a bend that explains only some of the gaps is one: the farthest of the poses
@@ -319,7 +288,7 @@ fn replicates(evidence: &PoseEvidence<'_>, unbent: Option<Six>) -> (Vec<Six>, Op
             .chain(unbent)
             .max_by(|a, b| a.norm().total_cmp(&b.norm())),
     );
-    let matrix = all.matrix.fixed_view::<6, 6>(0, 0).into_owned();
+    let matrix = all.equations.matrix.fixed_view::<6, 6>(0, 0).into_owned();
     motions.extend(weak_motions(&matrix, &weights, &gaps, contacts, noise));
     (motions, (!is_separable).then(|| six(offset_as_motion)))
 }
@@ -329,10 +298,10 @@ fn equations_of_patches(
     borders: &Borders,
     weights: &[f64],
     noise: f64,
-) -> Vec<NormalEquations> {
+) -> Vec<PatchEquations> {
     let patch_of = contacts.patches(LEVELS);
     let n_patches = patch_of.iter().max().map_or(0, |last| last + 1);
-    let mut parts: Vec<NormalEquations> = (0..n_patches).map(|_| NormalEquations::none()).collect();
+    let mut parts = vec![PatchEquations::default(); n_patches];
     for ((contact, &weight), &patch) in contacts.list.iter().zip(weights).zip(&patch_of) {
         let row = contacts.row(&contact.point, &contact.normal);
         parts[patch].add(&row, 1.0, contact.gap, weight);

@@ -1,13 +1,13 @@
 //! The search along the motions that surfaces leave free: a plate, a rail or a cup lies on its counterpart
 //! at many places, and only borders and holes tell them apart.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 use rayon::prelude::*;
 
 use super::context::PairContext;
 use crate::assess::border_curve::{Place, places};
-use crate::assess::contact::solve;
 use crate::assess::free_motion::{FreeMotion, FreeMotionKind};
+use crate::assess::least_squares::NormalEquations;
 use crate::assess::tolerance::is_source_smaller;
 use crate::geometry::{Aabb, Point3, Rotation, Similarity, Vector3};
 use crate::monitor::Cancelled;
@@ -403,7 +403,7 @@ impl BorderSearch {
         let moving: Vec<Generator> = (0..axes.len())
             .map(|k| frame(axes, amounts, k, axes[k].generator))
             .collect();
-        let (mut matrix, mut right) = (SMatrix::<f64, 3, 3>::zeros(), SVector::<f64, 3>::zeros());
+        let mut equations = NormalEquations::<3>::default();
         for place in &self.data {
             let point = local.rotation * place.point + local.translation;
             let tangent = local.rotation * place.tangent;
@@ -422,10 +422,9 @@ impl BorderSearch {
             for (entry, moving) in row.iter_mut().zip(&moving) {
                 *entry = moving.velocity(&at).dot(&border.across);
             }
-            matrix += row * row.transpose() * weight;
-            right -= row * (weight * gap);
+            equations.add_symmetric(&row, -gap, weight);
         }
-        let step = solve(&matrix, &right);
+        let step = equations.solved();
         std::array::from_fn(|k| match axes.get(k).map(|axis| axis.generator) {
             Some(Generator::Shift(_)) => step[k].clamp(-cut, cut),
             Some(Generator::Turn(..)) => step[k].clamp(-0.1, 0.1),

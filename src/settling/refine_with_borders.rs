@@ -3,8 +3,9 @@
 
 use super::context::PairContext;
 use crate::assess::borders::{BorderComparison, Borders, HOLES_THAT_HOLD};
-use crate::assess::contact::{MAX_NODES, quantile};
+use crate::assess::contact::MAX_NODES;
 use crate::assess::evidence::EvidenceSearch;
+use crate::assess::least_squares::quantile;
 use crate::assess::tolerance::Distances;
 use crate::assess::trims;
 use crate::geometry::Similarity;

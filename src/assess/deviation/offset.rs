@@ -3,6 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::{DeviationField, DeviationStats};
+use crate::assess::least_squares::NormalEquations;
 use crate::geometry::{Point3, Vector3};
 
 /// Which surfaces of the sheet two meshes stand for.
@@ -82,18 +83,17 @@ impl ConstantPart {
                     (s.distance - fit.dot(row)).abs() <= OUTLIER * rms + f64::MIN_POSITIVE
                 })
             };
-            let mut matrix = SMatrix::<f64, 7, 7>::zeros();
-            let mut right = SVector::<f64, 7>::zeros();
+            let mut equations = NormalEquations::<7>::default();
             let (mut kept, mut square) = (0.0, 0.0);
             for sample in samples {
                 let row = row(sample);
                 if is_kept(sample, &row) {
-                    matrix += row * row.transpose() * sample.weight;
-                    right += row * (sample.weight * sample.distance);
+                    equations.add_symmetric(&row, sample.distance, sample.weight);
                     kept += sample.weight;
                     square += sample.weight * sample.distance * sample.distance;
                 }
             }
+            let NormalEquations { matrix, right } = equations;
             // Flat, round and extruded parts leave some moves free; those are left out.
             let inverse = matrix.svd(true, true).pseudo_inverse(1e-9 * kept).ok()?;
             if !is_told_apart(&matrix) {
