@@ -3,12 +3,12 @@
 
 mod displaced;
 
-use nalgebra::SVector;
 use rayon::iter::Either;
 use rayon::prelude::*;
 
 use super::least_squares::quantile;
 use super::scaled::Scaled;
+use super::small_motion::{self, Six, turn_and_shift};
 use super::tolerance::is_source_smaller;
 use crate::geometry::{Point3, Rotation, Similarity, Vector3};
 use crate::registration::Surface;
@@ -50,10 +50,6 @@ pub(crate) struct Contacts {
     pub(super) center: Point3,
     pub(super) radius: f64,
 }
-
-/// A small motion of the source: a turn about a centre that is the same for all of one set, and a
-/// shift.
-pub(super) type Six = SVector<f64, 6>;
 
 /// The search for the places where two parts meet, under one pose after another.
 #[derive(Debug, Clone)]
@@ -307,17 +303,16 @@ impl Contacts {
         quantile(&mut sizes.collect::<Vec<_>>(), share)
     }
 
-    /// How a small motion moves a place along a direction, turns in lengths at `radius`.
-    pub(super) fn row(&self, point: &Point3, n: &Vector3) -> Six {
-        let lever = ((point - self.center) / self.radius).cross(n);
-        Six::from([lever.x, lever.y, lever.z, n.x, n.y, n.z])
+    /// How a small motion moves a place along a direction, turns about `center` and in lengths at `radius`.
+    pub(super) fn row(&self, point: &Point3, direction: &Vector3) -> Six {
+        small_motion::row(&((point - self.center) / self.radius), direction)
     }
 
     /// The motion that undoes a small one of the source, given as in [`Contacts::row`].
     pub(super) fn undo(&self, motion: &Six) -> Similarity {
-        let turn = Vector3::new(motion[0], motion[1], motion[2]) / -self.radius;
-        let shift = Vector3::new(motion[3], motion[4], motion[5]);
-        let rotation = *Rotation::new(turn).to_rotation_matrix().matrix();
+        let [turn, shift] = turn_and_shift(motion);
+        let rotation = Rotation::new(turn / -self.radius);
+        let rotation = *rotation.to_rotation_matrix().matrix();
         Similarity {
             rotation,
             ..Similarity::identity()

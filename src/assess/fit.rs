@@ -1,21 +1,22 @@
 //! What explains the gaps between two parts: a small motion, an offset of the sheets, and smooth bends.
 
 mod bends;
-mod equations;
+mod unknowns;
 
 use super::borders::PairKind;
-use super::contact::{Contact, Contacts, Six};
+use super::contact::{Contact, Contacts};
 use super::evidence::PoseEvidence;
 use super::least_squares::{NormalEquations, robust_weights};
+use super::small_motion::{Six, Unknown, motion_of};
 use crate::geometry::{Point3, Similarity, Vector3};
 
 pub(super) use bends::Bends;
-use bends::N_BENDS;
-pub(super) use equations::{N_SMOOTH, Row};
+pub(super) use unknowns::{N_SMOOTH, Row};
+use unknowns::{bends_of, joined};
 
 /// Times that places far off the fit are given less weight.
 const ROUNDS: usize = 4;
-/// Share of an offset that nothing else can imitate; with less it is not told apart.
+/// Share of an offset that nothing else can imitate; with less it is not separable.
 pub(super) const LEAST_OWN: f64 = 0.02;
 
 /// The gaps taken apart.
@@ -60,13 +61,8 @@ pub(super) fn explaining(
     direction: &Vector3,
     offset: f64,
 ) -> Row {
-    let mut row = Row::zeros();
-    let six = contacts.row(point, direction);
-    row.fixed_rows_mut::<6>(0).copy_from(&six);
-    row[6] = offset;
-    row.fixed_rows_mut::<N_BENDS>(7)
-        .copy_from(&bends.row(point, direction));
-    row
+    let motion = contacts.row(point, direction);
+    joined(&motion, offset, &bends.row(point, direction))
 }
 
 impl Fit {
@@ -135,7 +131,7 @@ impl Fit {
         for round in 0..2 * ROUNDS {
             let has_offset = round < ROUNDS;
             if round == ROUNDS {
-                if found[6].abs() <= evidence.most_offset {
+                if found[Unknown::OFFSET].abs() <= evidence.most_offset {
                     break;
                 }
                 // No offset of a sheet: one that bends undo.
@@ -149,17 +145,18 @@ impl Fit {
             for ((row, pair), weight) in beside.iter().zip(borders.pairs()).zip(border_weights) {
                 equations.add(row, pair.gap, *weight);
             }
-            is_separable = equations.imitated(6).own_share > LEAST_OWN;
+            is_separable = equations.imitated(Unknown::OFFSET).own_share > LEAST_OWN;
             if !is_separable || !has_offset {
                 // The shift of the rigid motion takes it.
-                equations.leave_out(6..7);
+                equations.leave_out(Unknown::OFFSET..Unknown::OFFSET + 1);
             }
             found = equations.solved();
             for ((left, row), contact) in left.iter_mut().zip(&places).zip(&contacts.list) {
                 *left = contact.gap - row.dot(&found);
             }
         }
-        let smooth = places.iter().map(|row| row.dot(&found) - found[6]);
+        let offset = found[Unknown::OFFSET];
+        let smooth = places.iter().map(|row| row.dot(&found) - offset);
         for (left, contact) in left.iter_mut().zip(&contacts.list) {
             *left = beyond_facets(*left, contact);
         }
@@ -182,10 +179,9 @@ impl Fit {
             smooth: smooth.collect(),
             borders: if explains { beside } else { as_they_are },
             holes: holes.collect(),
-            rigid: found.fixed_rows::<6>(0)
-                + bends.rigid_part(&found.fixed_rows::<N_BENDS>(7).into(), contacts),
+            rigid: motion_of(&found) + bends.rigid_part(&bends_of(&found), contacts),
             left,
-            offset: found[6],
+            offset,
             is_separable,
             bends,
             found,

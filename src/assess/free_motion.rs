@@ -4,6 +4,7 @@ use nalgebra::{Const, SMatrix, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
 use super::contact::{ContactSearch, FEW_NODES};
+use super::small_motion::{self, Six, turn_and_shift};
 use crate::geometry::serial::{any_float, xyz};
 use crate::geometry::{Matrix3, Point3, Rotation, Similarity, Vector3};
 use crate::registration::Surface;
@@ -195,7 +196,7 @@ fn motions_below(
         radius,
     } = resistance;
     let stiffest = eigen.eigenvalues.max();
-    let free: Vec<SMatrix<f64, 6, 1>> = (0..6)
+    let free: Vec<Six> = (0..6)
         .filter(|&k| eigen.eigenvalues[k] < below * stiffest)
         .map(|k| eigen.eigenvectors.column(k).into())
         .collect();
@@ -239,10 +240,7 @@ impl Resistance {
         let mut matrix = SMatrix::<f64, 6, 6>::zeros();
         let mut normals = Matrix3::zeros();
         for (point, normal, weight) in &held {
-            let lever = ((point - center) / radius).cross(normal);
-            let row = SMatrix::<f64, 6, 1>::from([
-                lever.x, lever.y, lever.z, normal.x, normal.y, normal.z,
-            ]);
+            let row = small_motion::row(&((point - center) / radius), normal);
             matrix += row * row.transpose() * *weight;
             normals += normal * normal.transpose() * *weight;
         }
@@ -259,9 +257,8 @@ impl Resistance {
     /// and a point of its axis.
     fn weakest(&self) -> (Vector3, Vector3, Point3) {
         let weakest = self.eigen.eigenvalues.imin();
-        let motion = self.eigen.eigenvectors.column(weakest);
-        let omega = Vector3::new(motion[0], motion[1], motion[2]);
-        let shift = Vector3::new(motion[3], motion[4], motion[5]);
+        let motion = self.eigen.eigenvectors.column(weakest).into();
+        let [omega, shift] = turn_and_shift(&motion);
         let arm = omega.cross(&shift) * self.radius / omega.norm_squared().max(1e-300);
         (omega, shift, self.center + arm)
     }
@@ -302,7 +299,7 @@ fn held_points(
 }
 
 fn classify(
-    free: &[SMatrix<f64, 6, 1>],
+    free: &[Six],
     normals: &Matrix3,
     free_below: f64,
     center: Point3,
@@ -320,9 +317,8 @@ fn classify(
     let turn = free
         .iter()
         .map(|motion| {
-            let omega = Vector3::new(motion[0], motion[1], motion[2]);
-            let tau = Vector3::new(motion[3], motion[4], motion[5]) * radius;
-            (omega, tau)
+            let [omega, shift] = turn_and_shift(motion);
+            (omega, shift * radius)
         })
         .max_by(|a, b| a.0.norm().total_cmp(&b.0.norm()))?;
     let (omega, tau) = turn;

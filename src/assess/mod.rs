@@ -25,6 +25,7 @@ mod pose;
 mod reason;
 mod scaled;
 pub(crate) mod shape;
+mod small_motion;
 pub(crate) mod statements;
 mod stretch;
 pub(crate) mod tolerance;

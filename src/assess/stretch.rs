@@ -7,11 +7,12 @@ use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
 use super::borders::{BorderPair, HolePair, LEAST_PAIRED, PairKind};
-use super::contact::{Contact, ContactSearch, Contacts, MAX_NODES, Six};
+use super::contact::{Contact, ContactSearch, Contacts, MAX_NODES};
 use super::evidence::PoseEvidence;
 use super::fit::{Bends, N_SMOOTH, explaining};
 use super::least_squares::{NormalEquations, quantile, robust_weights};
 use super::scaled::Scaled;
+use super::small_motion::{Six, motion_of};
 use super::tolerance::{ShapeTolerance, UNREMARKABLE};
 use crate::geometry::{Point3, Similarity, Vector3};
 
@@ -130,31 +131,23 @@ impl Frame {
 
     /// What the unknowns do to a gap. Stretches are in lengths at the ends of the part.
     fn row(&self, contacts: &Contacts, contact: &Contact) -> Row {
-        let Self(bends) = self;
         let (point, normal) = (&contact.point, &contact.normal);
-        let mut row = Row::zeros();
-        let smooth = explaining(contacts, bends, point, normal, 1.0);
-        row.fixed_rows_mut::<N_SMOOTH>(0).copy_from(&smooth);
-        let arm = bends.axes.transpose() * (point - bends.center);
-        let normal = bends.axes.transpose() * normal;
-        for k in 0..3 {
-            row[N_SMOOTH + k] = arm[k] / bends.half[k] * normal[k];
-        }
-        row
+        let smooth = explaining(contacts, &self.0, point, normal, 1.0);
+        with_stretches(&smooth, self.stretching(point, normal))
     }
 
     /// What a rigid motion and the stretches do to a place along a direction.
     fn placed(&self, contacts: &Contacts, point: &Point3, direction: &Vector3) -> Placed {
+        let motion = contacts.row(point, direction);
+        with_stretches(&motion, self.stretching(point, direction))
+    }
+
+    /// How much each stretch moves a place along a direction.
+    fn stretching(&self, point: &Point3, direction: &Vector3) -> [f64; 3] {
         let Self(bends) = self;
-        let mut row = Placed::zeros();
-        row.fixed_rows_mut::<6>(0)
-            .copy_from(&contacts.row(point, direction));
         let arm = bends.axes.transpose() * (point - bends.center);
         let direction = bends.axes.transpose() * direction;
-        for k in 0..3 {
-            row[6 + k] = arm[k] / bends.half[k] * direction[k];
-        }
-        row
+        [0, 1, 2].map(|k| arm[k] / bends.half[k] * direction[k])
     }
 
     /// The motion and the stretches that lay the outlines on each other; `None` where none does.
@@ -187,11 +180,8 @@ impl Frame {
             let pairs = outlines.iter().zip(&rows);
             pairs.map(|(pair, row)| pair.gap - row.dot(found)).collect()
         };
-        let mut found = Placed::zeros();
-        let before = at_most(&left_by(&found));
-        if let Some(stretches) = stretches {
-            found.fixed_rows_mut::<3>(6).copy_from_slice(&stretches);
-        }
+        let before = at_most(&left_by(&Placed::zeros()));
+        let mut found = with_stretches(&Six::zeros(), stretches.unwrap_or_default());
         let floor = evidence.noise.max(borders.unremarkable());
         let mut left = left_by(&found);
         for _ in 0..ROUNDS {
@@ -201,7 +191,7 @@ impl Frame {
                 equations.add(row, *left, weight);
             }
             if stretches.is_some() {
-                equations.leave_out(6..N_PLACED);
+                equations.leave_out(N_PLACED - 3..N_PLACED);
             }
             found += equations.solved();
             left = left_by(&found);
@@ -254,9 +244,8 @@ impl Frame {
             let gaps = Gaps::of(&search.at_scaled(pose, scaled)?, self);
             Some(gaps.explained(N_SMOOTH, *noise).1)
         };
-        let factors = [0, 1, 2].map(|k| 1.0 / (1.0 + found[6 + k] / self.0.half[k]));
-        let six: Six = found.fixed_rows::<6>(0).into();
-        let moved = evidence.contacts.undo(&six).after(pose);
+        let factors = self.shares(found).map(|share| 1.0 / (1.0 + share));
+        let moved = evidence.contacts.undo(&motion_of(found)).after(pose);
         let as_it_is = left_at(pose, None);
         let scaled = left_at(&moved, Some(&self.scaled(factors)));
         as_it_is
@@ -265,8 +254,8 @@ impl Frame {
     }
 
     /// Stretches of a solution as shares of the length.
-    fn shares(&self, found: &Row) -> [f64; 3] {
-        [0, 1, 2].map(|k| found[N_SMOOTH + k] / self.0.half[k])
+    fn shares<const M: usize>(&self, found: &SVector<f64, M>) -> [f64; 3] {
+        [0, 1, 2].map(|k| found[M - 3 + k] / self.0.half[k])
     }
 
     /// The axis along which the parts differ most, and by how much.
@@ -276,6 +265,17 @@ impl Frame {
         let axis = (1..3).fold(0, longer);
         (axis, by[axis])
     }
+}
+
+/// Unknowns with the stretches behind the others.
+fn with_stretches<const FEWER: usize, const ALL: usize>(
+    others: &SVector<f64, FEWER>,
+    stretches: [f64; 3],
+) -> SVector<f64, ALL> {
+    let mut all = SVector::<f64, ALL>::zeros();
+    all.fixed_rows_mut::<FEWER>(0).copy_from(others);
+    all.fixed_rows_mut::<3>(FEWER).copy_from_slice(&stretches);
+    all
 }
 
 /// How well outlines align.

@@ -4,10 +4,11 @@ use nalgebra::{SMatrix, SVector, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
 use super::borders::Borders;
-use super::contact::{Contacts, Six};
+use super::contact::Contacts;
 use super::evidence::PoseEvidence;
 use super::fit::{Fit, LEAST_OWN};
 use super::least_squares::{Imitated, NormalEquations, robust_weights};
+use super::small_motion::{Six, Unknown, motion_of, turn_and_shift};
 use crate::geometry::serial::{any_float, xyz};
 use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
 use crate::registration::Surface;
@@ -44,9 +45,10 @@ struct SmallMotion {
 impl SmallMotion {
     /// Of a motion given as in [`Contacts::row`].
     fn of(six: &Six, contacts: &Contacts) -> Self {
+        let [turn, shift] = turn_and_shift(six);
         Self {
-            turn: Vector3::new(six[0], six[1], six[2]) / contacts.radius,
-            shift: Vector3::new(six[3], six[4], six[5]),
+            turn: turn / contacts.radius,
+            shift,
         }
     }
 
@@ -209,7 +211,8 @@ impl PatchEquations {
 
     /// The evidence about the motion alone.
     fn without_offset(mut self) -> Self {
-        self.equations.leave_out(6..7);
+        self.equations
+            .leave_out(Unknown::OFFSET..Unknown::OFFSET + 1);
         self
     }
 
@@ -249,9 +252,9 @@ fn replicates(evidence: &PoseEvidence<'_>, unbent: Option<Six>) -> (Vec<Six>, Op
     let Imitated {
         by: offset_as_motion,
         own_share,
-    } = all.equations.imitated(6);
+    } = all.equations.imitated(Unknown::OFFSET);
     let is_separable = own_share > LEAST_OWN;
-    let has_offset = is_separable && with_offset[6].abs() > 3.0 * noise;
+    let has_offset = is_separable && with_offset[Unknown::OFFSET].abs() > 3.0 * noise;
     let is_offset =
         has_offset && all.left(&with_offset) < OFFSET_LEAVES * motion_alone.left(&plain);
     let (whole, all) = if is_offset {
@@ -265,7 +268,6 @@ fn replicates(evidence: &PoseEvidence<'_>, unbent: Option<Six>) -> (Vec<Six>, Op
         .iter()
         .map(|c| c.gap + contacts.row(&c.point, &c.normal).push(1.0).dot(&explained))
         .collect();
-    let six = |seven: Seven| -> Six { seven.fixed_rows::<6>(0).into() };
     let n = parts.len() as f64;
     let mut motions: Vec<Six> = parts
         .into_iter()
@@ -276,12 +278,12 @@ fn replicates(evidence: &PoseEvidence<'_>, unbent: Option<Six>) -> (Vec<Six>, Op
                 part.without_offset()
             };
             let others = &all.equations - &part.equations;
-            six((others.solved() - whole) * ((n - 1.0) / n).sqrt())
+            motion_of(&((others.solved() - whole) * ((n - 1.0) / n).sqrt()))
         })
         .collect();
     // Nobody knows whether an offset or a bend that explains only some of the gaps is one: the farthest of the poses
     // counts.
-    let steps = [six(whole), six(explained)];
+    let steps = [motion_of(&whole), motion_of(&explained)];
     motions.extend(
         steps
             .into_iter()
@@ -290,7 +292,10 @@ fn replicates(evidence: &PoseEvidence<'_>, unbent: Option<Six>) -> (Vec<Six>, Op
     );
     let matrix = all.equations.matrix.fixed_view::<6, 6>(0, 0).into_owned();
     motions.extend(weak_motions(&matrix, &weights, &gaps, contacts, noise));
-    (motions, (!is_separable).then(|| six(offset_as_motion)))
+    (
+        motions,
+        (!is_separable).then(|| motion_of(&offset_as_motion)),
+    )
 }
 
 fn equations_of_patches(

@@ -3,6 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::{DeviationField, DeviationStats};
+use crate::assess::fit::LEAST_OWN;
 use crate::assess::least_squares::NormalEquations;
 use crate::geometry::{Point3, Vector3};
 
@@ -54,8 +55,9 @@ pub struct ConstantPart {
 const ROUNDS: usize = 3;
 /// How far off, in residuals.
 const OUTLIER: f64 = 2.5;
-/// Share of the constant that no rigid move can imitate; with less it is not told apart.
-const LEAST_OWN: f64 = 0.02;
+
+/// The constant, then the shift and the turn of a move.
+type Unknowns = SVector<f64, 7>;
 
 impl ConstantPart {
     /// Weighted least squares over seven unknowns, outliers left out. O(samples).
@@ -74,11 +76,11 @@ impl ConstantPart {
         let row = |s: &Sample| {
             let lever = ((s.point - center) / radius).cross(&s.normal);
             let n = &s.normal;
-            SVector::<f64, 7>::from([1.0, n.x, n.y, n.z, lever.x, lever.y, lever.z])
+            Unknowns::from([1.0, n.x, n.y, n.z, lever.x, lever.y, lever.z])
         };
-        let mut found: Option<(SVector<f64, 7>, f64)> = None;
+        let mut found: Option<(Unknowns, f64)> = None;
         for _ in 0..ROUNDS {
-            let is_kept = |s: &Sample, row: &SVector<f64, 7>| {
+            let is_kept = |s: &Sample, row: &Unknowns| {
                 found.is_none_or(|(fit, rms)| {
                     (s.distance - fit.dot(row)).abs() <= OUTLIER * rms + f64::MIN_POSITIVE
                 })
@@ -96,7 +98,7 @@ impl ConstantPart {
             let NormalEquations { matrix, right } = equations;
             // Flat, round and extruded parts leave some moves free; those are left out.
             let inverse = matrix.svd(true, true).pseudo_inverse(1e-9 * kept).ok()?;
-            if !is_told_apart(&matrix) {
+            if !is_separable(&matrix) {
                 return None;
             }
             let fit = inverse * right;
@@ -112,7 +114,7 @@ impl ConstantPart {
 }
 
 /// True if enough of the constant's column lies outside the span of the six columns of a move.
-fn is_told_apart(matrix: &SMatrix<f64, 7, 7>) -> bool {
+fn is_separable(matrix: &SMatrix<f64, 7, 7>) -> bool {
     let moves: SMatrix<f64, 6, 6> = matrix.fixed_view::<6, 6>(1, 1).into();
     let mixed: SVector<f64, 6> = matrix.fixed_view::<6, 1>(1, 0).into();
     let whole = matrix[(0, 0)];

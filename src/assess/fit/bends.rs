@@ -2,7 +2,8 @@
 
 use nalgebra::SVector;
 
-use crate::assess::contact::{Contacts, Six};
+use crate::assess::contact::Contacts;
+use crate::assess::small_motion::Six;
 use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
 use crate::registration::Surface;
 

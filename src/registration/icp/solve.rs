@@ -11,6 +11,14 @@ const RANK_TOLERANCE: f64 = 1e-9;
 /// the same over large areas, so thousands of points say no more than a few places.
 const N_PLACES: f64 = 16.0;
 
+/// How much each unknown changes a residual.
+pub(super) struct Row {
+    pub(super) rotation: Vector3,
+    pub(super) translation: Vector3,
+    /// A relative change of scale.
+    pub(super) scale: f64,
+}
+
 /// Sum of weighted rows aᵀx ≈ r with three rotations, three translations and one scale.
 ///
 /// Lengths are divided by `length`, so that rotations and translations compare.
@@ -41,6 +49,9 @@ pub(super) struct Solution {
 }
 
 impl NormalEquations {
+    /// Where the scale stands, behind rotation and translation.
+    const SCALE: usize = 6;
+
     pub(super) fn new(length: f64) -> Self {
         Self {
             length,
@@ -51,15 +62,13 @@ impl NormalEquations {
     }
 
     /// Adds weight · (rotation·ω + translation·τ + scale·s − residual)².
-    pub(super) fn add(
-        &mut self,
-        weight: f64,
-        rotation: &Vector3,
-        translation: &Vector3,
-        scale: f64,
-        residual: f64,
-    ) {
+    pub(super) fn add(&mut self, row: &Row, residual: f64, weight: f64) {
         let inverse = 1.0 / self.length;
+        let Row {
+            rotation,
+            translation,
+            scale,
+        } = row;
         let row = [
             rotation.x * inverse,
             rotation.y * inverse,
@@ -91,9 +100,9 @@ impl NormalEquations {
         matrix.fill_upper_triangle_with_lower_triangle();
         let mut rhs = self.rhs;
         if !rules.with_scale {
-            matrix.row_mut(6).fill(0.0);
-            matrix.column_mut(6).fill(0.0);
-            rhs[6] = 0.0;
+            matrix.row_mut(Self::SCALE).fill(0.0);
+            matrix.column_mut(Self::SCALE).fill(0.0);
+            rhs[Self::SCALE] = 0.0;
         }
         if !matrix.iter().chain(rhs.iter()).all(|x| x.is_finite()) {
             return None;
@@ -115,11 +124,11 @@ impl NormalEquations {
             let stiffness = eigen.eigenvalues[k] * (1.0 + rules.damping) + ridge;
             solution += eigen.eigenvectors.column(k) * (force(k) / stiffness);
         }
-        let translation = Vector3::new(solution[3], solution[4], solution[5]) * self.length;
+        let translation: Vector3 = solution.fixed_rows::<3>(3).into();
         Some(Solution {
-            rotation: Vector3::new(solution[0], solution[1], solution[2]),
-            translation,
-            scale: solution[6],
+            rotation: solution.fixed_rows::<3>(0).into(),
+            translation: translation * self.length,
+            scale: solution[Self::SCALE],
         })
     }
 }

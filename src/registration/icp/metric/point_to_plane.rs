@@ -3,7 +3,7 @@
 use super::{MAX_ROTATION_DEG, StepRules};
 use crate::geometry::{Rotation, Similarity, Vector3};
 use crate::registration::icp::correspondence::Correspondence;
-use crate::registration::icp::solve::{NormalEquations, center_and_radius};
+use crate::registration::icp::solve::{NormalEquations, Row, center_and_radius};
 
 /// Gauss–Newton step of Σ w ((p − q)·n)² about the centroid of the moved points (Chen and Medioni
 /// 1992), with the exact exponential of the rotation vector.
@@ -19,13 +19,12 @@ pub(super) fn step(
         let arm = pair.moved - center;
         let normal = pair.matched_normal;
         let residual = (pair.matched - pair.moved).dot(&normal);
-        equations.add(
-            pair.weight,
-            &arm.cross(&normal),
-            &normal,
-            arm.dot(&normal),
-            residual,
-        );
+        let row = Row {
+            rotation: arm.cross(&normal),
+            translation: normal,
+            scale: arm.dot(&normal),
+        };
+        equations.add(&row, residual, pair.weight);
     }
     let solution = equations.solve(&rules.solve())?;
     let (turn, shift) = limited(solution.rotation, solution.translation, rules);

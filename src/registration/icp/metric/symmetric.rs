@@ -3,7 +3,7 @@
 use super::{MAX_ROTATION_DEG, StepRules};
 use crate::geometry::{Point3, Rotation, Similarity, Vector3};
 use crate::registration::icp::correspondence::Correspondence;
-use crate::registration::icp::solve::{NormalEquations, center_and_radius};
+use crate::registration::icp::solve::{NormalEquations, Row, center_and_radius};
 
 /// Step of Σ w ((p − q)·(nₚ + n_q))² where both sides turn by half of the rotation (Rusinkiewicz
 /// 2019, equation 10).
@@ -27,8 +27,12 @@ pub(super) fn step(
         let q = pair.matched - matched_center;
         let normal = pair.moved_normal + pair.matched_normal;
         let residual = (q - p).dot(&normal);
-        let lever = (p + q).cross(&normal);
-        equations.add(pair.weight, &lever, &normal, p.dot(&normal), residual);
+        let row = Row {
+            rotation: (p + q).cross(&normal),
+            translation: normal,
+            scale: p.dot(&normal),
+        };
+        equations.add(&row, residual, pair.weight);
     }
     let solution = equations.solve(&rules.solve())?;
     let tangent = solution.rotation.norm();
