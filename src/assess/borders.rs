@@ -27,12 +27,20 @@ const SAME_RADIUS: f64 = 1.6;
 /// Of holes that overlap and are not the same, one is a pilot hole or an opening cut later if its radius is so many
 /// times smaller.
 const ANOTHER_KIND: f64 = 4.0;
+/// Such holes lie about one middle if theirs lie apart by less than this share of the smaller radius.
+const ONE_MIDDLE: f64 = 0.5;
+/// Over a curved sheet the middle of a hole floats by up to this share of its radius.
+const FLOATING: f64 = 0.5;
 /// A place is paired if nothing nearer than this share of its distance is beside its counterpart.
 const MUTUAL: f64 = 0.7;
 /// Where fewer of the smaller part's borders lie beside borders of the other, the parts are trimmed differently
 /// and borders say nothing about the shape.
 pub(crate) const LEAST_PAIRED: f64 = 0.4;
-/// Points of the other part's borders in the tree.
+/// Distances of borders are stated at this share of their length.
+pub(super) const STATED: f64 = 0.9;
+/// Points of the other part's borders in the tree lie at least this share of the reach apart, …
+const SPACING: f64 = 0.1;
+/// … and there are at most so many.
 const N_DENSE: f64 = 40_000.0;
 
 /// A place on a border of one part beside a border of the other, in the target's frame.
@@ -213,7 +221,7 @@ impl BorderPlaces {
         if own_length <= 0.0 || other_length <= 0.0 {
             return None;
         }
-        let spacing = (0.1 * near / other_unit).max(other_length / N_DENSE);
+        let spacing = (SPACING * near / other_unit).max(other_length / N_DENSE);
         let dense = along(other, spacing);
         let spacing = spacing * other_unit;
         let step = own_length / N_PLACES as f64;
@@ -285,7 +293,7 @@ impl Borders {
         let pairs = self.pairs.iter().zip(left);
         let alike = pairs.filter(|(pair, _)| pair.kind != PairKind::Mixed);
         let sizes = alike.map(|(pair, left)| (left.abs(), pair.weight));
-        quantile(&mut sizes.collect::<Vec<_>>(), 0.9)
+        quantile(&mut sizes.collect::<Vec<_>>(), STATED)
     }
 
     pub(crate) fn pairs(&self) -> &[BorderPair] {
@@ -437,7 +445,7 @@ fn overlaps(hole: &Hole, other: &Hole) -> bool {
     let off = (hole.center - other.center).norm();
     let crosses = off < small + large && off > large - small;
     let is_in_one_sheet = hole.normal.dot(&other.normal).abs() > PARALLEL;
-    is_in_one_sheet && (crosses || off < 0.5 * small) && large < ANOTHER_KIND * small
+    is_in_one_sheet && (crosses || off < ONE_MIDDLE * small) && large < ANOTHER_KIND * small
 }
 
 /// The holes at whose middle the other part is solid, and the rest.
@@ -450,8 +458,7 @@ fn solid_at(
 ) -> (Vec<Hole>, Vec<Hole>) {
     let is_solid = |hole: &Hole| {
         let at = other_from_target.apply(&hole.center);
-        // Over a curved sheet the middle of a hole floats a little.
-        let reach = (0.5 * hole.radius + near) / unit;
+        let reach = (FLOATING * hole.radius + near) / unit;
         let hit = other.bvh().closest(&at, reach, None, None);
         hit.is_some_and(|hit| {
             let away = (at - hit.point).norm();

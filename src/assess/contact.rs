@@ -18,8 +18,14 @@ use crate::search::{ClosestPoint, SurfaceHit};
 pub(crate) const MAX_NODES: usize = 8000;
 /// Nodes of the smaller part that poses are compared on.
 pub(crate) const FEW_NODES: usize = 2000;
+/// Differences of the surfaces are stated at this share of the area: what lies farther apart at few places is looked
+/// for by itself.
+pub(crate) const STATED_SHARE: f64 = 0.95;
 /// Surfaces that turn away from each other by more than this do not lie on each other: cosine of 50°.
 const MIN_FACING: f64 = 0.64;
+/// A point lies beside the place closest to it, and not above, if the way there leads off the normal by more than this:
+/// sine of 30°.
+const BESIDE: f64 = 0.5;
 
 /// A place of the smaller part beside the other part, in the target's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -357,7 +363,7 @@ impl Contacts {
 /// Whether a point lies rather beside the place of a surface closest to it than above.
 fn is_beside(model: &Surface, hit: &SurfaceHit, point: &Point3) -> bool {
     let (away, normal) = (point - hit.point, model.normal_at(hit));
-    (away - normal * away.dot(&normal)).norm() > 0.5 * away.norm()
+    (away - normal * away.dot(&normal)).norm() > BESIDE * away.norm()
 }
 
 /// How far a facet may lie off the smooth surface it stands for, whose normal here is `normal`: the

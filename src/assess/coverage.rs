@@ -59,13 +59,19 @@ impl Coverage {
     }
 }
 
-/// Half the mean edge length of the coarser mesh, at least three times the faceting: beyond it a
-/// carried value would come from the wrong element. Target length units, for poses of this scale.
+/// A place is covered within this share of the mean edge length of the coarser mesh: beyond it a carried value would
+/// come from the wrong element, …
+const LIMIT_EDGES: f64 = 0.5;
+/// … and at least within so many times the faceting.
+const LIMIT_FACETING: f64 = 3.0;
+
+/// Distance up to which a place counts as covered: half the mean edge length of the coarser mesh, at least three times
+/// the faceting. Target length units, for poses of this scale.
 pub fn overlap_limit(source: &Surface, target: &Surface, scale: f64, allowance: f64) -> f64 {
     let (a, b) = (source.measures(), target.measures());
     let edge = (scale * a.mean_edge_length).max(b.mean_edge_length);
     let chordal = (scale * a.chordal_error).max(b.chordal_error);
-    (0.5 * edge).max(3.0 * chordal) + allowance
+    (LIMIT_EDGES * edge).max(LIMIT_FACETING * chordal) + allowance
 }
 
 /// Measures the nodes of both meshes under a pose: all of them up to 250,000, an even choice of a larger

@@ -95,6 +95,7 @@ pub fn assess(
         }),
         shape: None,
     };
+    // The ends of the part lie half a diagonal from its middle.
     let most_scaled = tolerance.springback / (0.5 * target.measures().diagonal);
     let mirrored = mirrored_statement([source, target], outcome, settings);
     decide::decide(

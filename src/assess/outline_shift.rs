@@ -13,6 +13,8 @@ const EXPLAINED: f64 = 0.75;
 const EACH_WAY: f64 = 0.25;
 /// Cosine of the largest angle between a shift and the directions across borders that it moves apart.
 const ACROSS: f64 = 0.5;
+/// A shift of less than this share of what is accepted has no direction.
+const LEAST_SHIFT: f64 = 0.5;
 /// Fewer holes may have been pierced elsewhere.
 const LEAST_HOLES: usize = 3;
 
@@ -30,7 +32,7 @@ pub(super) fn outline_aside_of_holes(
     let shift = outline.shift();
     let of_holes = fit.holes.iter().map(|hole| hole.off).sum::<Vector3>();
     let of_holes = of_holes / fit.holes.len() as f64;
-    let along = shift.try_normalize(0.5 * limit)?;
+    let along = shift.try_normalize(LEAST_SHIFT * limit)?;
     let by = (shift - of_holes).dot(&along);
     if by <= limit || !outline.explained_by(&shift) {
         return None;

@@ -6,7 +6,7 @@ mod local;
 use serde::{Deserialize, Serialize};
 
 use super::borders::{Borders, LEAST_PAIRED, PairKind};
-use super::contact::Contacts;
+use super::contact::{Contacts, STATED_SHARE};
 use super::evidence::PoseEvidence;
 use super::fit::{Fit, HoleLeft};
 use super::outline_shift::outline_aside_of_holes;
@@ -224,8 +224,8 @@ impl ShapeStatement {
             tolerance,
             met: contacts.share,
             overhang: (contacts.share < MOSTLY_MET).then(|| evidence.overhang()),
-            springback: contacts.at_share(&fit.smooth, 0.95),
-            remainder: contacts.at_share(&fit.left, 0.95),
+            springback: contacts.at_share(&fit.smooth, STATED_SHARE),
+            remainder: contacts.at_share(&fit.left, STATED_SHARE),
             offset: Some(fit.offset).filter(|o| o.abs() > FACETING * evidence.noise),
             is_offset_separable: fit.is_separable,
             is_offset_removed: false,

@@ -28,6 +28,12 @@ const REFUTED: f64 = 1.5;
 const MUCH_FARTHER: f64 = 3.0;
 /// Times that the part is stretched back and compared again.
 const ROUNDS: usize = 3;
+/// Times that places far off the fit of the gaps are given less weight.
+const REWEIGHTINGS: usize = 2;
+/// A part is longer by more than what may remain at both of its ends.
+const ENDS: f64 = 2.0;
+/// A first estimate below this share of that is not followed.
+const WORTH_FOLLOWING: f64 = 0.5;
 /// Places of the smaller part that are looked at; three numbers need no more.
 const N_PLACES: usize = MAX_NODES / 4;
 /// Gaps that shrink to this share of themselves come from the stretch: what bends a part, or is noise, does
@@ -64,7 +70,7 @@ pub(super) struct Stretch {
 /// the other by more than what may remain on both sides, and neither outlines nor holes speak against it.
 /// O(nodes · log triangles).
 pub(super) fn stretch(evidence: &PoseEvidence<'_>, tolerance: &ShapeTolerance) -> Option<Stretch> {
-    let limit = 2.0 * tolerance.remainder;
+    let limit = ENDS * tolerance.remainder;
     let frame = Frame::of(evidence);
     let surfaces = [evidence.source, evidence.target];
     let scale = evidence.pose.scale;
@@ -77,7 +83,7 @@ pub(super) fn stretch(evidence: &PoseEvidence<'_>, tolerance: &ShapeTolerance) -
     }
     let (found, mut after) = gaps.explained(N, evidence.noise);
     let mut shares = frame.shares(&found);
-    if frame.longest(&shares).1 < 0.5 * limit {
+    if frame.longest(&shares).1 < WORTH_FOLLOWING * limit {
         return None;
     }
     for _ in 0..ROUNDS {
@@ -314,7 +320,7 @@ impl Gaps {
     fn explained(&self, n: usize, noise: f64) -> (Row, f64) {
         let mut left = self.sizes.clone();
         let mut found = Row::zeros();
-        for _ in 0..2 {
+        for _ in 0..REWEIGHTINGS {
             let weights = robust_weights(&left, &self.areas, noise);
             let mut equations = NormalEquations::<N>::default();
             for ((row, gap), weight) in self.rows.iter().zip(&self.sizes).zip(weights) {

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::borders::{BorderPair, Borders, HOLES_THAT_HOLD, PairKind};
+use super::borders::{BorderPair, Borders, HOLES_THAT_HOLD, PairKind, STATED};
 use super::evidence::PoseEvidence;
 use super::fit::Fit;
 use super::least_squares::quantile;
@@ -17,14 +17,14 @@ use crate::geometry::serial::xyz;
 const MOST_APART: f64 = 0.5;
 /// Outlines lie apart if a small motion and a bend leave more than this share of their distance.
 const LEFT: f64 = 0.5;
-/// Share of the outlines that the statement about borders is made at.
-const STATED: f64 = 0.9;
 
 /// Surfaces are fitted no less if no more is left on this share of them, which holds beads.
 pub(crate) const MOST_WITH_BEADS: f64 = 0.98;
 
-/// A stretch of border is told if it is at least this share of the borders beside each other.
+/// A stretch of border is reported if it is at least this share of the borders beside each other, …
 const STRETCH: f64 = 0.03;
+/// … and so many places.
+const LEAST_PLACES: usize = 5;
 
 /// A stretch of border that lies apart from its counterpart. In target units and the target's frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -82,7 +82,7 @@ pub(crate) fn trusted_fit(evidence: &mut PoseEvidence<'_>, limit: f64) -> Fit {
 /// them without what springback and an error of the pose explain. O(places).
 pub(super) fn farthest_apart(borders: &Borders, left: &[f64], limit: f64) -> Option<BorderApart> {
     let pairs = borders.pairs();
-    let n = ((STRETCH * pairs.len() as f64) as usize).max(5);
+    let n = ((STRETCH * pairs.len() as f64) as usize).max(LEAST_PLACES);
     let stretches = pairs.windows(n).zip(left.windows(n));
     let apart = stretches.filter_map(|(pairs, left)| {
         let mut sizes: Vec<f64> = left.iter().map(|x| x.abs()).collect();

@@ -4,10 +4,11 @@ use nalgebra::{SMatrix, SVector, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
 use super::borders::Borders;
-use super::contact::Contacts;
+use super::contact::{Contacts, STATED_SHARE};
 use super::evidence::PoseEvidence;
 use super::fit::{Fit, LEAST_OWN};
 use super::least_squares::{Imitated, NormalEquations, robust_weights};
+use super::shape::FACETING;
 use super::small_motion::{Six, Unknown, motion_of, turn_and_shift};
 use crate::geometry::serial::{any_float, xyz};
 use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
@@ -113,7 +114,8 @@ impl PoseUncertainty {
             contacts,
             ..
         } = evidence;
-        let [bend, left] = [&fit.smooth, &fit.left].map(|values| contacts.at_share(values, 0.95));
+        let [bend, left] =
+            [&fit.smooth, &fit.left].map(|values| contacts.at_share(values, STATED_SHARE));
         // Where about as much remains as is bent, the bends stand for something else.
         let unbent = Some(fit.rigid).filter(|_| bend > CLEARLY_BENT * left);
         let (mut motions, offset_as_motion) = replicates(evidence, unbent);
@@ -254,7 +256,7 @@ fn replicates(evidence: &PoseEvidence<'_>, unbent: Option<Six>) -> (Vec<Six>, Op
         own_share,
     } = all.equations.imitated(Unknown::OFFSET);
     let is_separable = own_share > LEAST_OWN;
-    let has_offset = is_separable && with_offset[Unknown::OFFSET].abs() > 3.0 * noise;
+    let has_offset = is_separable && with_offset[Unknown::OFFSET].abs() > FACETING * noise;
     let is_offset =
         has_offset && all.left(&with_offset) < OFFSET_LEAVES * motion_alone.left(&plain);
     let (whole, all) = if is_offset {

@@ -6,7 +6,7 @@ use std::cmp::Ordering;
 
 use super::context::PairContext;
 use crate::assess::borders::{Borders, HolePair};
-use crate::assess::contact::MAX_NODES;
+use crate::assess::contact::{MAX_NODES, STATED_SHARE};
 use crate::geometry::Similarity;
 use crate::monitor::Cancelled;
 
@@ -56,7 +56,7 @@ pub fn is_better_with_all_pairs(
         Some(Met {
             share: contacts.share,
             typical: contacts.typical_gap(remainder),
-            far: contacts.at_share(&contacts.without_offset(remainder), 0.95),
+            far: contacts.at_share(&contacts.without_offset(remainder), STATED_SHARE),
         })
     };
     let (Some(before), Some(after)) = (met(closest), met(all)) else {

@@ -2,7 +2,7 @@
 
 use super::context::PairContext;
 use crate::assess::borders::LEAST_PAIRED;
-use crate::assess::contact::MAX_NODES;
+use crate::assess::contact::{MAX_NODES, STATED_SHARE};
 use crate::assess::evidence::EvidenceSearch;
 use crate::assess::fit::Fit;
 use crate::assess::shape::FACETING;
@@ -55,7 +55,8 @@ pub fn without_bend(
             trims::trusted_fit(&mut evidence, limit)
         };
         let contacts = &evidence.contacts;
-        let [bend, left] = [&fit.smooth, &fit.left].map(|values| contacts.at_share(values, 0.95));
+        let [bend, left] =
+            [&fit.smooth, &fit.left].map(|values| contacts.at_share(values, STATED_SHARE));
         let (first_bend, first_left, first_share) =
             *first.get_or_insert((bend, left, contacts.share));
         if first_bend <= hardly {

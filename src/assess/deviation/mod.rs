@@ -33,6 +33,8 @@ pub struct DeviationSettings {
 
 /// Default reach as a share of the target's diagonal.
 const REACH: f64 = 0.05;
+/// A reach is never less than so many limits.
+const LEAST_REACH: f64 = 2.0;
 /// Worst spots that are listed, and how many mean edges lie between two of them.
 const N_SPOTS: usize = 12;
 const SPOT_EDGES: f64 = 6.0;
@@ -49,7 +51,7 @@ impl DeviationSettings {
         let reach = self
             .reach
             .unwrap_or_else(|| REACH * target.measures().diagonal);
-        reach.max(2.0 * self.limit_for(source, target, scale))
+        reach.max(LEAST_REACH * self.limit_for(source, target, scale))
     }
 }
 
