@@ -35,6 +35,8 @@ const MOST_SETTLED: usize = 8;
 /// brings them together.
 const FAR_BEHIND: f64 = 10.0;
 const NOT_BESIDE: f64 = 0.3;
+/// Poses that lie nearer to each other than this share of it settle as one.
+const ONE_SETTLED: f64 = 0.5;
 /// Poses turned over or turned round, from which the search along the free motion begins as well.
 const MOST_ROOTS: usize = 3;
 /// Poses looked at for that.
@@ -43,6 +45,9 @@ const MOST_ROOTS_TRIED: usize = 8;
 const MOST_ALTERNATIVES: usize = 5;
 /// Turns between poses of one family: cosine of 10°.
 const SAME_WAY: f64 = 0.985;
+/// A border counts as lying where it belongs up to so many times what may remain and what facets make of it, the less
+/// the farther it lies off.
+const HELD_WITHIN: f64 = 2.0;
 /// Another pose takes the place of the result if so much more of the borders lies where it belongs, as a
 /// share of them.
 const MORE_HELD: f64 = 0.005;
@@ -364,7 +369,8 @@ impl<'a> PoseComparison<'a> {
         let farthest = (FAR_BEHIND * closest).max(NOT_BESIDE * near);
         let mut kept: Vec<Similarity> = Vec::new();
         for (apart, pose) in sorted {
-            let is_near = |other: &Similarity| self.context.displacement(&pose, other) < 0.5 * near;
+            let is_near =
+                |other: &Similarity| self.context.displacement(&pose, other) < ONE_SETTLED * near;
             if kept.len() < MOST_SETTLED && apart <= farthest && !kept.iter().any(is_near) {
                 kept.push(pose);
             }
@@ -448,7 +454,7 @@ impl<'a> PoseComparison<'a> {
     /// for what lies farther from it; holes where the other part is solid count against the pose. With it the
     /// share that a single place of the borders stands for.
     fn borders_held(&self, borders: &Borders) -> (f64, f64) {
-        let within = 2.0 * (self.remainder() + borders.unremarkable());
+        let within = HELD_WITHIN * (self.remainder() + borders.unremarkable());
         let (mut held, mut paired, mut largest) = (0.0, 0.0, 0.0_f64);
         for pair in borders.pairs() {
             largest = largest.max(pair.weight);

@@ -29,6 +29,14 @@ const CUT: f64 = 0.02;
 const CUTS: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
 /// The lattice of a motion in one direction is so many times finer: one that steps over a hole finds its other side.
 const FINER_ALONG_ONE: f64 = 8.0;
+/// Turns of the lattice lie so many of its steps apart where the part is widest, …
+const STEPS_OF_TURN: f64 = 2.0;
+/// … and there are no fewer and no more of them than these.
+const N_TURNS: [f64; 2] = [24.0, 720.0];
+/// A lattice of too many poses is made coarser by this factor, again and again, …
+const COARSER: f64 = 1.2;
+/// … until its steps are so many times the distance beyond which borders have nothing to do with each other.
+const COARSEST: f64 = 8.0;
 /// Steps of each round.
 const N_STEPS: usize = 3;
 /// Share of the smaller part that may lie beside the other one.
@@ -43,6 +51,16 @@ const MOST_FINISHED: usize = 120;
 const MOST_POSES: f64 = 400_000.0;
 /// Borders that run in directions farther apart than this are not the same: cosine of 37°.
 const PARALLEL: f32 = 0.8;
+/// In a step a border counts for a place up to so many times the distance across it beyond which it does not.
+const ALONG: f64 = 2.0;
+/// Largest turn of one step, in radians.
+const MOST_TURN: f64 = 0.1;
+/// Poses are near each other that lie apart by less than this share of [`CUT`], …
+const NEAR: f64 = 0.5;
+/// … or of this share of the smaller part's diagonal where that is more, …
+const NEAR_EXTENT: f64 = 0.01;
+/// … at one place of so many.
+const NEAR_PLACES: usize = 8;
 /// The grid that finds the nearest border.
 const GRID: GridSettings = GridSettings {
     n_cells: 112,
@@ -174,9 +192,10 @@ fn axes(free: &FreeMotion, [data, model]: [Aabb; 2], cut: f64) -> Vec<Axis> {
                 Generator::Shift(along) => spread(off.dot(&along), room, step),
                 Generator::Turn(..) => {
                     let turn = std::f64::consts::PI;
-                    let n = (2.0 * turn * radius / (2.0 * step))
+                    let [fewest, most] = N_TURNS;
+                    let n = (2.0 * turn * radius / (STEPS_OF_TURN * step))
                         .ceil()
-                        .clamp(24.0, 720.0);
+                        .clamp(fewest, most);
                     (0..n as usize).map(|k| 2.0 * turn * k as f64 / n).collect()
                 }
             };
@@ -192,10 +211,10 @@ fn axes(free: &FreeMotion, [data, model]: [Aabb; 2], cut: f64) -> Vec<Axis> {
     loop {
         let found = lattice(step);
         let count: f64 = found.iter().map(|axis| axis.amounts.len() as f64).product();
-        if count <= MOST_POSES || step > 8.0 * cut {
+        if count <= MOST_POSES || step > COARSEST * cut {
             return found;
         }
-        step *= 1.2;
+        step *= COARSER;
     }
 }
 
@@ -327,12 +346,12 @@ impl BorderSearch {
                 break;
             }
             let is_near = |other: &Similarity| {
-                let places = self.data.iter().step_by(8);
+                let places = self.data.iter().step_by(NEAR_PLACES);
                 let moved = places.map(|place| {
                     let point = self.outer(&place.point);
                     (candidate.motion.apply(&point) - other.apply(&point)).norm()
                 });
-                moved.fold(0.0, f64::max) < 0.5 * self.cut.max(0.01 * self.extent)
+                moved.fold(0.0, f64::max) < NEAR * self.cut.max(NEAR_EXTENT * self.extent)
             };
             if !distinct.iter().any(is_near) {
                 distinct.push(candidate.motion);
@@ -413,7 +432,7 @@ impl BorderSearch {
             let gap = (point - border.point).dot(&border.across) / self.grid.scale();
             let ratio = gap / cut;
             let away = (point - border.point).norm() / self.grid.scale();
-            if ratio.abs() >= 1.0 || away > 2.0 * cut {
+            if ratio.abs() >= 1.0 || away > ALONG * cut {
                 continue;
             }
             let weight = place.weight * (1.0 - ratio * ratio).powi(2);
@@ -427,7 +446,7 @@ impl BorderSearch {
         let step = equations.solved();
         std::array::from_fn(|k| match axes.get(k).map(|axis| axis.generator) {
             Some(Generator::Shift(_)) => step[k].clamp(-cut, cut),
-            Some(Generator::Turn(..)) => step[k].clamp(-0.1, 0.1),
+            Some(Generator::Turn(..)) => step[k].clamp(-MOST_TURN, MOST_TURN),
             None => 0.0,
         })
     }

@@ -24,6 +24,8 @@ const LEAST_PAIRED: f64 = 0.3;
 /// The misfit of the borders must shrink at least to this share, or the distance of the surfaces while no fewer
 /// borders lie beside each other: those of a bent part fit nowhere.
 const BETTER: f64 = 0.7;
+/// The misfit is what this share of the length of the borders does not exceed.
+const MOSTLY: f64 = 0.75;
 /// The surfaces may come to lie apart by so many times as much …
 const AS_CLOSE: f64 = 1.5;
 /// … and this share of what may remain.
@@ -160,7 +162,7 @@ fn misfit(borders: &Borders) -> f64 {
     let pairs = borders.pairs().iter();
     quantile(
         &mut pairs.map(|p| (p.gap.abs(), p.weight)).collect::<Vec<_>>(),
-        0.75,
+        MOSTLY,
     )
 }
 
