@@ -288,6 +288,12 @@ impl Borders {
         self.holes.iter().chain(&self.overlapping)
     }
 
+    /// How far the hole that lies farthest from its counterpart is off; 0 without holes.
+    pub(crate) fn worst_hole(&self) -> f64 {
+        let off = self.holes.iter().map(|pair| pair.off.norm());
+        off.fold(0.0, f64::max)
+    }
+
     /// What 90 % of the pairs of like borders do not exceed of these distances across them, one for each pair.
     pub(super) fn distance_of_most(&self, left: &[f64]) -> f64 {
         let pairs = self.pairs.iter().zip(left);

@@ -57,6 +57,15 @@ pub(crate) struct Contacts {
     pub(super) radius: f64,
 }
 
+/// How two parts meet.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Meeting {
+    /// Share of the smaller part that meets the other.
+    pub(crate) share: f64,
+    /// How far the surfaces lie apart there, root mean square.
+    pub(crate) gap: f64,
+}
+
 /// The search for the places where two parts meet, under one pose after another.
 #[derive(Debug, Clone)]
 pub(crate) struct ContactSearch<'a> {
@@ -300,6 +309,14 @@ impl Contacts {
         let gaps = self.without_offset(offset).into_iter();
         let squares = gaps.zip(&self.list).map(|(gap, c)| c.weight * gap.powi(2));
         (squares.sum::<f64>() / weight).sqrt()
+    }
+
+    /// How the parts meet, apart from an offset as in [`Contacts::without_offset`].
+    pub(crate) fn meeting(&self, offset: f64) -> Meeting {
+        Meeting {
+            share: self.share,
+            gap: self.typical_gap(offset),
+        }
     }
 
     /// The size that these values, one for each place, do not exceed over this share of the area.

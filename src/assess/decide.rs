@@ -8,10 +8,9 @@ use std::cmp::Ordering;
 use super::ambiguity::Clarity;
 use super::assessment::Assessment;
 use super::borders::HOLES_THAT_HOLD;
-use super::free_motion::FreeMotionKind;
 use super::pose::{PoseKind, PoseStatement};
 use super::reason::Reason;
-use super::shape::{ELSEWHERE, ShapeReason, ShapeStatement};
+use super::shape::{ShapeStatement, only_overhangs};
 use super::tolerance::{AssessSettings, UNREMARKABLE};
 use super::verdict::Verdict;
 use crate::registration::starts::StartKind;
@@ -32,20 +31,29 @@ const SEVERAL_TO: f64 = 500.0;
 /// Parts whose sizes differ by more than this factor are not in one unit, whatever the units are.
 const FAR_APART: f64 = 50.0;
 
-/// Sets the verdict, its reasons, the most severe first, and the statement about the pose. `mirrored` is the
-/// statement about the shape of the opposite hand, `most_scaled` how far the scale of the pairs may be off,
-/// `settings` those of the assessment.
-pub(super) fn decide(
-    assessment: &mut Assessment,
-    shape: &ShapeStatement,
-    mirrored: Option<&ShapeStatement>,
-    outcome: &MatchOutcome,
-    most_scaled: f64,
-    settings: &AssessSettings,
-) {
+/// What a verdict is decided by beside what is measured.
+pub(super) struct Grounds<'a> {
+    pub(super) outcome: &'a MatchOutcome,
+    pub(super) shape: &'a ShapeStatement,
+    /// The statement about the shape of the opposite hand.
+    pub(super) mirrored: Option<&'a ShapeStatement>,
+    /// How far the scale of the pairs may be off.
+    pub(super) most_scaled: f64,
+    pub(super) settings: &'a AssessSettings,
+}
+
+/// Sets the verdict, its reasons, the most severe first, and the statement about the pose.
+pub(super) fn decide(assessment: &mut Assessment, grounds: &Grounds<'_>) {
+    let Grounds {
+        outcome,
+        shape,
+        mirrored,
+        most_scaled,
+        settings,
+    } = *grounds;
     let several = several_parts(assessment, settings.n_target_parts);
     let read = read_errors(settings);
-    let sizes = || sizes_far_apart(assessment, several.is_some());
+    let sizes = || sizes_far_apart(assessment).filter(|_| several.is_none());
     if let Some(units) = unit(assessment).or_else(sizes) {
         // Whatever lies on the wrong size by chance says nothing of pose and shape.
         assessment.verdict = units.severity();
@@ -58,7 +66,7 @@ pub(super) fn decide(
     }
     let of_pose = [
         ending(outcome),
-        sliding(assessment, shape, outcome.rivals_sought),
+        sliding(assessment, shape, outcome),
         ambiguity(assessment),
         others_not_sought(outcome),
         uncertainty(assessment),
@@ -135,8 +143,8 @@ fn fits_better(shape: &ShapeStatement, than: &ShapeStatement) -> bool {
             && than.remainder > share * than.tolerance.remainder
     };
     let n_differences = |shape: &ShapeStatement| {
-        let is_bend = |reason: &ShapeReason| matches!(reason, ShapeReason::Bent { .. });
-        shape.reasons.iter().filter(|r| !is_bend(r)).count()
+        let reasons = shape.reasons.iter();
+        reasons.filter(|reason| !reason.is_bend()).count()
     };
     if remains_less(shape, than, 1.0) {
         return true;
@@ -179,10 +187,10 @@ fn unit(assessment: &Assessment) -> Option<Reason> {
 }
 
 /// Sizes that differ by far more than parts that belong together, by the factor of no unit that is known.
-fn sizes_far_apart(assessment: &Assessment, is_several: bool) -> Option<Reason> {
+fn sizes_far_apart(assessment: &Assessment) -> Option<Reason> {
     let size_ratio = assessment.scale_check.size_ratio;
     let is_far = size_ratio.ln().abs() > FAR_APART.ln();
-    (is_far && !is_several).then_some(Reason::SizesFarApart { size_ratio })
+    is_far.then_some(Reason::SizesFarApart { size_ratio })
 }
 
 /// A scale that would move the ends of the part by more than springback may.
@@ -197,8 +205,8 @@ fn overlap(assessment: &Assessment, shape: &ShapeStatement) -> Option<Reason> {
     let coverage = &assessment.coverage;
     let is_firm = assessment.pose.as_ref().is_some_and(PoseStatement::is_firm);
     let is_held = is_firm && assessment.freedom.motion.is_none();
-    let elsewhere = shape.overhang.map(|beyond| 1.0 - shape.met - beyond);
-    let only_overhangs = elsewhere.is_some_and(|share| share < ELSEWHERE);
+    let overhangs = shape.overhang;
+    let only_overhangs = overhangs.is_some_and(|share| only_overhangs(shape.met, share));
     let is_one = shape.reasons.is_empty() && only_overhangs && is_held;
     (shape.met < ENOUGH_MET && !is_one).then_some(Reason::BothOverhang {
         source: coverage.source_on_target.overlap,
@@ -208,14 +216,15 @@ fn overlap(assessment: &Assessment, shape: &ShapeStatement) -> Option<Reason> {
 
 /// A motion that the surfaces do not resist, unless holes hold the part, or borders that were compared
 /// with those of all other poses along it: the borders of a plate fit after half a turn.
-fn sliding(assessment: &Assessment, shape: &ShapeStatement, rivals_sought: bool) -> Option<Reason> {
+fn sliding(
+    assessment: &Assessment,
+    shape: &ShapeStatement,
+    outcome: &MatchOutcome,
+) -> Option<Reason> {
     let motion = assessment.freedom.motion?;
     let is_firm = assessment.pose.as_ref().is_some_and(PoseStatement::is_firm);
-    let was_searched = !matches!(
-        motion.kind,
-        FreeMotionKind::Spherical | FreeMotionKind::Other
-    );
-    let is_clear = rivals_sought && was_searched && assessment.ambiguity.clarity == Clarity::Clear;
+    let was_searched = outcome.rivals_sought && motion.kind.is_searched();
+    let is_clear = was_searched && assessment.ambiguity.clarity == Clarity::Clear;
     let borders = &shape.borders;
     let borders_fit = borders
         .offset
@@ -278,7 +287,7 @@ fn ending(outcome: &MatchOutcome) -> Option<Reason> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::assess::ShapeTolerance;
+    use crate::assess::{ShapeReason, ShapeTolerance};
     use crate::geometry::Point3;
 
     fn shape(remainder: f64, reasons: &[ShapeReason]) -> ShapeStatement {

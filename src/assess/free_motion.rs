@@ -54,6 +54,13 @@ pub enum FreeMotionKind {
     Other,
 }
 
+impl FreeMotionKind {
+    /// Whether poses along such a motion can be searched one after the other.
+    pub(crate) fn is_searched(self) -> bool {
+        !matches!(self, Self::Spherical | Self::Other)
+    }
+}
+
 /// A family of motions that the surfaces do not resist.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FreeMotion {

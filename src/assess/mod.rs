@@ -51,6 +51,7 @@ pub use words::{as_well, beside, error_beside};
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{MatchOutcome, Surface};
+use decide::{Grounds, decide};
 use statements::{Statements, mirrored_statement, statements};
 use tolerance::Distances;
 
@@ -98,14 +99,14 @@ pub fn assess(
     // The ends of the part lie half a diagonal from its middle.
     let most_scaled = tolerance.springback / (0.5 * target.measures().diagonal);
     let mirrored = mirrored_statement([source, target], outcome, settings);
-    decide::decide(
-        &mut assessment,
-        &shape,
-        mirrored.as_ref(),
+    let grounds = Grounds {
         outcome,
+        shape: &shape,
+        mirrored: mirrored.as_ref(),
         most_scaled,
         settings,
-    );
+    };
+    decide(&mut assessment, &grounds);
     let is_comparable = !assessment.reasons.iter().any(Reason::is_of_units);
     assessment.shape = is_comparable.then_some(shape);
     monitor.check()?;

@@ -25,7 +25,7 @@ const MOSTLY_MET: f64 = 0.75;
 /// Of parts of which the smaller meets the other by less than this share, each has a piece that the other lacks,
 pub(crate) const OVERHANGS: f64 = 0.95;
 /// unless more than this share lies neither on the other part nor beyond its borders.
-pub(crate) const ELSEWHERE: f64 = 0.03;
+const ELSEWHERE: f64 = 0.03;
 /// A remainder of so many tolerances is that of a different part where most of the area exceeds the tolerance.
 const DIFFERENT: f64 = 6.0;
 /// Distances up to so many times the faceting, or [`UNREMARKABLE`] of the tolerance, mean nothing at most of the
@@ -166,7 +166,18 @@ pub enum ShapeReason {
     },
 }
 
+/// Whether a part of which this share meets the other one lies beyond its borders otherwise, with this share: hardly any
+/// of it lies where the other part is and does not meet it.
+pub(crate) fn only_overhangs(met: f64, overhang: f64) -> bool {
+    1.0 - met - overhang < ELSEWHERE
+}
+
 impl ShapeReason {
+    /// Whether it is a bend, which springback may be.
+    pub(crate) fn is_bend(&self) -> bool {
+        matches!(self, Self::Bent { .. })
+    }
+
     /// Whether parts that differ so are two different parts.
     pub(super) fn is_of_another_part(&self) -> bool {
         match self {
@@ -339,11 +350,7 @@ impl ShapeStatement {
             return ShapeKind::Different;
         }
         if !self.reasons.is_empty() {
-            let only_bent = self
-                .reasons
-                .iter()
-                .all(|r| matches!(r, ShapeReason::Bent { .. }));
-            return if only_bent {
+            return if self.reasons.iter().all(ShapeReason::is_bend) {
                 ShapeKind::Deformed
             } else {
                 ShapeKind::OtherVersion

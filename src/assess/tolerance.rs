@@ -32,6 +32,8 @@ const FIRST_BORDER_REACH: f64 = 0.03;
 /// Borders are looked for within this share of the diagonal while a pose is refined: a door slides so far.
 const REFINED_BORDER_REACH: f64 = 0.015;
 
+/// Surfaces lie as close if they lie at most so many times as far apart.
+pub(crate) const AS_CLOSE: f64 = 1.5;
 /// Surfaces that lie farther apart than before by so many times what they lay apart and what facets leave open
 /// lie elsewhere.
 const OFF: f64 = 3.0;
@@ -180,6 +182,12 @@ impl Distances {
     pub(crate) fn little_more(&self, share: f64, gap: f64) -> f64 {
         let remainder = self.tolerance.remainder;
         (share * remainder).min(OFF * (gap + self.noise))
+    }
+
+    /// How far apart surfaces may lie and still lie as close as others that lie `gap` apart: [`AS_CLOSE`] times as far
+    /// and [`Distances::little_more`].
+    pub(crate) fn as_close_as(&self, share: f64, gap: f64) -> f64 {
+        AS_CLOSE * gap + self.little_more(share, gap)
     }
 }
 

@@ -4,6 +4,7 @@
 
 use std::cmp::Ordering;
 
+use super::candidate::LITTLE_LESS;
 use super::context::PairContext;
 use crate::assess::borders::{Borders, HolePair};
 use crate::assess::contact::{MAX_NODES, STATED_SHARE};
@@ -21,10 +22,8 @@ const LEAST_GAIN: f64 = 0.3;
 /// Where holes say nothing, the surfaces lie apart by at most this share too, over 95 % of the area: a flange of
 /// another version turns a part that otherwise fits, and hardly comes closer.
 const CLOSER_SURFACES: f64 = 0.75;
-/// The parts still meet but for this share of them.
-const AS_MUCH: f64 = 0.02;
-/// Distances that differ by less are the same.
-const AS_CLOSE: f64 = 1.02;
+/// Distances that differ by a smaller factor are the same.
+const SAME_DISTANCE: f64 = 1.02;
 
 /// Whether the second pose, which keeps all pairs, is better than the first, which keeps the closest ones: as much of
 /// the parts meets, they lie as close, and their holes lie closer together, or where those say nothing their borders
@@ -62,8 +61,8 @@ pub fn is_better_with_all_pairs(
     let (Some(before), Some(after)) = (met(closest), met(all)) else {
         return Ok(false);
     };
-    Ok(after.share >= before.share - AS_MUCH
-        && after.typical <= AS_CLOSE * before.typical
+    Ok(after.share >= before.share - LITTLE_LESS
+        && after.typical <= SAME_DISTANCE * before.typical
         && after.far <= most_of_surfaces * before.far)
 }
 

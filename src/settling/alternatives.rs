@@ -5,7 +5,7 @@
 use rayon::prelude::*;
 
 use super::candidate::{Candidate, FewPlaces, Judged, LEAST_SHARED, is_much_closer, judged};
-use super::chosen_pose::{ChosenPose, distinct, ranked};
+use super::chosen_pose::{ChosenPose, as_likely, beaten};
 use super::context::PairContext;
 use super::refine_with_borders::Refinement;
 use crate::assess::contact::MAX_NODES;
@@ -34,15 +34,15 @@ pub fn chosen_by_shape(
     let found = &outcome.target_from_source;
     let distances = context.distances(found.scale);
     let few = FewPlaces::new(context, found.scale);
-    let (met, apart) = few.met_and_apart(found);
-    let overhangs = met < OVERHANGS;
+    let own = few.meeting(found);
+    let overhangs = own.share < OVERHANGS;
     let lies_closer = |other: &Alternative| {
-        let (met, own) = few.met_and_apart(&other.target_from_source);
-        met >= LEAST_SHARED && is_much_closer(met, own, apart, distances.noise)
+        let piece = few.meeting(&other.target_from_source);
+        piece.share >= LEAST_SHARED && is_much_closer(piece, own.gap, distances.noise)
     };
     let is_near = |other: &&Alternative| {
         let scores_near = overhangs || other.score_ratio < WORTH_SETTLING;
-        scores_near || apart > distances.noise && lies_closer(other)
+        scores_near || own.gap > distances.noise && lies_closer(other)
     };
     let alternatives = outcome.alternatives.iter();
     let (near, far): (Vec<&Alternative>, Vec<&Alternative>) = alternatives.partition(is_near);
@@ -57,7 +57,11 @@ pub fn chosen_by_shape(
     let refined: Result<Vec<Similarity>, Cancelled> = near.par_iter().map(refine).collect();
     let Judged { result, candidates } =
         judged(context, (*found, None), &refined?, |pose, shape| {
-            few.candidate(pose, shape, overhangs)
+            if overhangs {
+                few.overhanging(pose, shape)
+            } else {
+                few.candidate(pose, shape)
+            }
         })?;
     // Of candidates with as many differences the first one scores best.
     let better = candidates.iter().filter(|other| other.beats(&result));
@@ -78,23 +82,18 @@ pub fn chosen_by_shape(
         overhangs,
         borders_chose: !surfaces_hold && !winner.outlines_are_no_evidence,
     };
-    let before = Alternative {
-        target_from_source: *found,
-        score_ratio: 1.0,
-        start: outcome.winner,
+    let before = as_likely(*found, outcome);
+    let before = if winner.beats(&result) {
+        beaten(before)
+    } else {
+        before
     };
     let near = near.into_iter().zip(&candidates);
-    let mut alternatives: Vec<Alternative> = near
+    let others = near
         .map(|(other, candidate)| beside.rated(*other, candidate))
         .chain(far.into_iter().copied())
-        .chain([ranked(before, winner.beats(&result))])
-        .filter(|other| !beside.is_winner(&other.target_from_source))
-        .collect();
-    alternatives.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
-    Ok(Some(ChosenPose {
-        target_from_source: winner.pose,
-        alternatives: distinct(&alternatives, source),
-    }))
+        .chain([before]);
+    Ok(Some(ChosenPose::new(winner.pose, others, source)))
 }
 
 /// What alternatives are rated by beside the pose that was chosen.
@@ -117,7 +116,7 @@ impl Beside<'_> {
     fn rated(&self, other: Alternative, candidate: &Candidate) -> Alternative {
         let (winner, noise) = (self.winner, self.distances.noise);
         if winner.beats(candidate) {
-            return ranked(other, true);
+            return beaten(other);
         }
         let fits_elsewhere = self.overhangs
             && candidate.fits_elsewhere_as_well_as(winner, &self.distances)

@@ -5,16 +5,16 @@ mod hand;
 
 use rayon::prelude::*;
 
-use super::chosen_pose::{ChosenPose, distinct};
+use super::chosen_pose::{ChosenPose, as_likely, distinct};
 use super::context::PairContext;
 use super::free_motion_search::poses_along;
 use super::holes;
 use super::refine_with_borders::{Least, Refinement};
 use crate::assess::borders::{BorderComparison, Borders, HolePair, PairKind};
-use crate::assess::contact::{FEW_NODES, MAX_NODES};
+use crate::assess::contact::{FEW_NODES, MAX_NODES, Meeting};
 use crate::assess::free_motion::{FreeMotion, FreeMotionKind, weak_motion, weakest_motion};
 use crate::assess::shape::OVERHANGS;
-use crate::assess::tolerance::Distances;
+use crate::assess::tolerance::{AS_CLOSE, Distances};
 use crate::geometry::Similarity;
 use crate::monitor::Cancelled;
 use crate::registration::{Alternative, MatchOutcome, same_pose};
@@ -63,9 +63,7 @@ const SURELY_HELD: f64 = 0.9;
 const HARDLY_HELD: f64 = 0.5;
 /// Poses that are not refined yet may lie so many times as far apart as springback explains.
 const ROUGHLY: f64 = 2.0;
-/// Its surfaces may lie apart by so many times as much …
-const AS_CLOSE: f64 = 1.5;
-/// … and so many tolerances more.
+/// Its surfaces may lie apart by [`AS_CLOSE`] times as much and so many tolerances more.
 const LITTLE_GAP: f64 = 0.25;
 /// A pose that meets so many times as much of the part may lie as far apart as springback explains.
 pub(super) const MUCH_MORE: f64 = 1.3;
@@ -143,10 +141,11 @@ pub fn held_by_borders(
     };
     let rivals: Result<Vec<Option<Refined>>, Cancelled> = refined.par_iter().map(close).collect();
     let rivals: Vec<Refined> = rivals?.into_iter().flatten().collect();
-    let choice = comparison.choice(&result, is_close(&result), &rivals);
+    let choice = comparison.choice(&result, &closest, &rivals);
     let winner = choice.unwrap_or(result);
     let exactly = Refinement::new(context, found.scale, MAX_NODES);
-    let mut alternatives = comparison.alternatives(&winner, choice.is_some(), &rivals, outcome);
+    let before = choice.map(|_| as_likely(*found, outcome));
+    let mut alternatives = comparison.alternatives(&winner, before, &rivals, outcome);
     let by_holes = refined.iter().filter(|other| !is_close(other));
     alternatives.extend(comparison.with_most_holes(&winner, by_holes, outcome.winner));
     alternatives.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
@@ -169,13 +168,7 @@ fn motion_to_search(context: &PairContext<'_>, pose: &Similarity) -> Option<Free
     let PairContext { source, target, .. } = *context;
     let limit = context.distances(pose.scale).free_limit;
     let weak = weak_motion(source, target, pose, limit);
-    let has_path = |motion: FreeMotion| {
-        !matches!(
-            motion.kind,
-            FreeMotionKind::Spherical | FreeMotionKind::Other
-        )
-    };
-    if weak.is_some_and(has_path) || !holes_lie_aside(context, pose) {
+    if weak.is_some_and(|motion| motion.kind.is_searched()) || !holes_lie_aside(context, pose) {
         return weak;
     }
     weakest_motion(source, target, pose, limit).or(weak)
@@ -266,8 +259,7 @@ impl Refined {
 
     fn is_as_close_as(&self, other: &Self, distances: &Distances) -> bool {
         let springback = distances.tolerance.springback;
-        let little = distances.little_more(LITTLE_GAP, other.gap);
-        let mut most = AS_CLOSE * other.gap + little;
+        let mut most = distances.as_close_as(LITTLE_GAP, other.gap);
         if self.met > MUCH_MORE * other.met {
             // A bent part lies closer where only a piece of it meets the other.
             most = most.max(springback);
@@ -331,9 +323,10 @@ impl<'a> PoseComparison<'a> {
         Ok(closer.and_then(|pose| self.measured(pose)))
     }
 
-    /// The rival that the borders speak for; `None` where they speak for the result, which may win only if it
-    /// lies close.
-    fn choice(&self, result: &Refined, is_close: bool, rivals: &[Refined]) -> Option<Refined> {
+    /// The rival that the borders speak for; `None` where they speak for the result, which may win only if its surfaces
+    /// lie as close as under the closest pose.
+    fn choice(&self, result: &Refined, closest: &Refined, rivals: &[Refined]) -> Option<Refined> {
+        let is_close = result.is_as_close_as(closest, &self.distances);
         let beats = |a: &Refined, b: &Refined| a.has_more_holes_than(b, self.remainder());
         let is_better = |other: &Refined| {
             // Another trim moves outlines, and no hole.
@@ -380,38 +373,36 @@ impl<'a> PoseComparison<'a> {
 
     /// How well a pose fits.
     fn measured(&self, pose: Similarity) -> Option<Refined> {
-        let (met, gap) = self.surfaces_met(&pose)?;
+        let meeting = self.meeting(&pose)?;
         let borders = self.borders.at(&pose);
         let (held, grain) = self.borders_held(&borders);
-        let holes = borders.holes.iter().map(|pair| pair.off.norm());
         Some(Refined {
             pose,
             held,
             paired: borders.share().min(1.0),
             grain,
             n_holes: borders.holes.len(),
-            worst_hole: holes.fold(0.0, f64::max),
+            worst_hole: borders.worst_hole(),
             missing: borders.missing_share(),
-            met,
-            gap,
+            met: meeting.share,
+            gap: meeting.gap,
         })
     }
 
     /// Whether the surfaces of a pose that is not refined yet lie about as close as those of the result.
     fn lies_on(&self, pose: &Similarity, result: &Refined) -> bool {
-        let Some((met, gap)) = self.surfaces_met(pose) else {
+        let Some(Meeting { share, gap }) = self.meeting(pose) else {
             return false;
         };
         // Springback and what is left to refine may hold them apart.
         let most = (AS_CLOSE * result.gap).max(ROUGHLY * self.springback());
-        met >= AS_MUCH * result.met && gap <= most
+        share >= AS_MUCH * result.met && gap <= most
     }
 
-    /// Share of the smaller part that meets the other under a pose, and how far apart they lie there.
-    fn surfaces_met(&self, pose: &Similarity) -> Option<(f64, f64)> {
+    /// How the parts meet under a pose; `None` where they do not.
+    fn meeting(&self, pose: &Similarity) -> Option<Meeting> {
         let mut contacts = self.context.contacts(pose.scale, self.near(), FEW_NODES);
-        let contacts = contacts.at(pose)?;
-        Some((contacts.share, contacts.typical_gap(self.remainder())))
+        Some(contacts.at(pose)?.meeting(self.remainder()))
     }
 
     /// The result and poses of other families whose surfaces lie as close: turned over, turned round, or on another
@@ -497,20 +488,15 @@ impl<'a> PoseComparison<'a> {
         })
     }
 
-    /// The other poses with what their borders say of them.
+    /// The other poses with what their borders say of them; `before` is the result where a rival takes its place.
     fn alternatives(
         &self,
         winner: &Refined,
-        is_replaced: bool,
+        before: Option<Alternative>,
         rivals: &[Refined],
         outcome: &MatchOutcome,
     ) -> Vec<Alternative> {
         let part = self.context.source.measures().into();
-        let before = Alternative {
-            target_from_source: outcome.target_from_source,
-            score_ratio: 1.0,
-            start: outcome.winner,
-        };
         let is_other =
             |other: &Alternative| !same_pose(&other.target_from_source, &winner.pose, &part);
         let with_borders = |other: &Alternative| {
@@ -531,18 +517,13 @@ impl<'a> PoseComparison<'a> {
         };
         let little = NO_GAP * self.remainder();
         let slid = rivals.iter().map(|rival| Alternative {
-            target_from_source: rival.pose,
             score_ratio: ((rival.gap + little) / (winner.gap + little)).max(1.0),
-            ..before
+            ..as_likely(rival.pose, outcome)
         });
         let known = outcome.alternatives.iter().copied();
-        let others = known.chain(is_replaced.then_some(before)).chain(slid);
-        let mut alternatives: Vec<Alternative> = others
-            .filter(|other| is_other(other))
-            .map(|other| with_borders(&other))
-            .collect();
-        alternatives.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
-        let mut distinct = distinct(&alternatives, self.context.source);
+        let others = known.chain(before).chain(slid).filter(is_other);
+        let others = others.map(|other| with_borders(&other));
+        let mut distinct = distinct(others, self.context.source);
         distinct.truncate(MOST_ALTERNATIVES.max(outcome.alternatives.len()));
         distinct
     }

@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use super::context::PairContext;
 use crate::assess::borders::HOLES_THAT_HOLD;
-use crate::assess::contact::{ContactSearch, FEW_NODES};
-use crate::assess::shape::{ELSEWHERE, OVERHANGS};
+use crate::assess::contact::{ContactSearch, FEW_NODES, Meeting};
+use crate::assess::shape::{OVERHANGS, only_overhangs};
 use crate::assess::statements::Outlines;
 use crate::assess::tolerance::{Distances, UNREMARKABLE};
 use crate::assess::{ShapeReason, ShapeStatement};
@@ -19,18 +19,16 @@ pub(super) const LITTLE_LESS: f64 = 0.02;
 pub(super) const LEAST_SHARED: f64 = 0.5;
 /// Lengths of so many tolerances are differences whatever the facets are and however the part is bent.
 const CLEARLY: f64 = 2.0;
-/// Surfaces lie as close if they lie at most so many times as far apart.
-pub(super) const AS_CLOSE: f64 = 1.5;
 /// Where a piece of the smaller part meets the other, it lies much closer than all of it under another pose if it lies
 /// apart by at most this share of what a bend of the whole is in that piece, which grows with the square of its length.
 const MUCH_CLOSER: f64 = 0.5;
 /// Surfaces that lie apart by at most so many times what facets leave lie on each other.
 const ON_EACH_OTHER: f64 = 2.0;
 
-/// Whether a piece of the smaller part, of this share, lies much closer, by `own`, than the part does that lies `other`
+/// Whether a piece of the smaller part that meets the other lies much closer there than the part does that lies `other`
 /// apart.
-pub(super) fn is_much_closer(share: f64, own: f64, other: f64, noise: f64) -> bool {
-    own + noise <= MUCH_CLOSER * share * share * other
+pub(super) fn is_much_closer(piece: Meeting, other: f64, noise: f64) -> bool {
+    piece.gap + noise <= MUCH_CLOSER * piece.share * piece.share * other
 }
 
 /// Two parts looked at in few places.
@@ -42,26 +40,32 @@ impl<'a> FewPlaces<'a> {
         Self(context.contacts(scale, reach, FEW_NODES))
     }
 
-    /// Share of the smaller part that meets the other under a pose, and how far apart they lie there.
-    pub(super) fn met_and_apart(&self, pose: &Similarity) -> (f64, f64) {
+    /// How the parts meet under a pose.
+    pub(super) fn meeting(&self, pose: &Similarity) -> Meeting {
         let contacts = self.0.clone().at(pose);
-        contacts.map_or((0.0, f64::INFINITY), |contacts| {
-            (contacts.share, contacts.typical_gap(0.0))
-        })
+        let nowhere = Meeting {
+            share: 0.0,
+            gap: f64::INFINITY,
+        };
+        contacts.map_or(nowhere, |contacts| contacts.meeting(0.0))
     }
 
-    /// A pose with what speaks against it; where each part has a piece that the other lacks, with the share of the
-    /// smaller one that lies neither on the other nor beyond its borders. `overhangs` says that they have one under a
-    /// pose that this one is compared with.
-    pub(super) fn candidate(
-        &self,
-        pose: Similarity,
-        shape: &ShapeStatement,
-        overhangs: bool,
-    ) -> Candidate {
-        let overhangs = overhangs || shape.met < OVERHANGS;
-        let elsewhere = overhangs.then(|| 1.0 - shape.met - self.0.overhang(&pose));
-        Candidate::at(pose, shape, elsewhere)
+    /// A pose with what speaks against it, and whether each part only overhangs the other where it does.
+    pub(super) fn candidate(&self, pose: Similarity, shape: &ShapeStatement) -> Candidate {
+        if shape.met < OVERHANGS {
+            self.overhanging(pose, shape)
+        } else {
+            Candidate::at(pose, shape)
+        }
+    }
+
+    /// The same where each part has a piece that the other lacks, or has one under a pose that this one is compared
+    /// with.
+    pub(super) fn overhanging(&self, pose: Similarity, shape: &ShapeStatement) -> Candidate {
+        Candidate {
+            only_overhangs: only_overhangs(shape.met, self.0.overhang(&pose)),
+            ..Candidate::at(pose, shape)
+        }
     }
 }
 
@@ -129,10 +133,11 @@ pub(super) struct Candidate {
     outlines_lie_apart: bool,
     /// Whether nothing at all speaks against one shape, a bend neither.
     pub(super) is_one_shape: bool,
-    /// Share of the smaller part that meets the other, and, where each has a piece that the other lacks, the share that
-    /// lies neither on the other part nor beyond its borders.
+    /// Share of the smaller part that meets the other.
     pub(super) met: f64,
-    elsewhere: Option<f64>,
+    /// Whether each part has a piece that the other lacks, and hardly any of the smaller one lies neither on the other
+    /// part nor beyond its borders.
+    only_overhangs: bool,
     /// How far the surfaces lie apart by a bend,
     bend: f64,
     /// and besides it.
@@ -153,7 +158,7 @@ struct BordersOff {
 }
 
 impl Candidate {
-    pub(super) fn at(pose: Similarity, shape: &ShapeStatement, elsewhere: Option<f64>) -> Self {
+    pub(super) fn at(pose: Similarity, shape: &ShapeStatement) -> Self {
         let n_that_say = |what: Evidence| {
             let reasons = shape.reasons.iter();
             reasons
@@ -174,7 +179,7 @@ impl Candidate {
             outlines_lie_apart: (shape.reasons.iter())
                 .any(|reason| matches!(reason, ShapeReason::Borders { .. })),
             met: shape.met,
-            elsewhere,
+            only_overhangs: false,
             bend: shape.springback,
             remainder: shape.remainder,
             off: (borders.offset)
@@ -191,14 +196,10 @@ impl Candidate {
     /// they share is as much alike. That more overlaps under one of two such poses says nothing: a row of like features
     /// may be shifted by one of them.
     pub(super) fn fits_elsewhere_as_well_as(&self, other: &Self, distances: &Distances) -> bool {
-        let is_trimmed_off = self.elsewhere.is_some_and(|share| share < ELSEWHERE);
-        let is_as_close = |own: f64, other: f64| {
-            own <= AS_CLOSE * other + distances.little_more(UNREMARKABLE, other)
-        };
-        is_trimmed_off
+        let is_as_close = |own: f64, other: f64| own <= distances.as_close_as(UNREMARKABLE, other);
+        self.only_overhangs
             && self.met >= LEAST_SHARED
-            && self.n_differences <= other.n_differences
-            && self.n_alone <= other.n_alone
+            && self.differs_no_more_than(other)
             && is_as_close(self.bend, other.bend)
             && is_as_close(self.remainder, other.remainder)
     }
@@ -206,9 +207,8 @@ impl Candidate {
     /// How far the surfaces lie apart under this pose over how far they do under another, at least 1; `None` where
     /// less meets or more differs. `noise` is what facets leave.
     pub(super) fn ratio_to(&self, other: &Self, noise: f64) -> Option<f64> {
-        let fits_as_much = self.met >= other.met - LITTLE_LESS
-            && self.n_differences <= other.n_differences
-            && self.n_alone <= other.n_alone
+        let fits_as_much = self.meets_as_much_as(other)
+            && self.differs_no_more_than(other)
             && self.n_holes >= other.n_holes;
         let apart = |of: &Self| of.apart() + noise;
         fits_as_much.then(|| (apart(self) / apart(other)).max(1.0))
@@ -223,17 +223,31 @@ impl Candidate {
     /// which more of the parts meets while the surfaces lie much farther apart: a piece lies on another by chance
     /// hardly ever, while a bend and an offset explain much.
     pub(super) fn lies_much_closer_elsewhere_than(&self, other: &Self, noise: f64) -> bool {
-        self.elsewhere.is_some_and(|share| share < ELSEWHERE)
+        let piece = Meeting {
+            share: self.met,
+            gap: self.apart_in_all(),
+        };
+        self.only_overhangs
             && (LEAST_SHARED..other.met).contains(&self.met)
-            && self.n_differences <= other.n_differences
-            && self.n_alone <= other.n_alone
-            && is_much_closer(self.met, self.apart_in_all(), other.apart_in_all(), noise)
+            && self.differs_no_more_than(other)
+            && is_much_closer(piece, other.apart_in_all(), noise)
     }
 
     /// The same where the piece even lies on the other part but for what facets leave.
     pub(super) fn lies_exactly_elsewhere_unlike(&self, other: &Self, noise: f64) -> bool {
         self.apart_in_all() <= ON_EACH_OTHER * noise
             && self.lies_much_closer_elsewhere_than(other, noise)
+    }
+
+    /// Whether as much of the smaller part meets the other as under another pose.
+    pub(super) fn meets_as_much_as(&self, other: &Self) -> bool {
+        self.met >= other.met - LITTLE_LESS
+    }
+
+    /// Whether there are no more differences of the shapes than under another pose, and no more holes without a
+    /// counterpart.
+    fn differs_no_more_than(&self, other: &Self) -> bool {
+        self.n_differences <= other.n_differences && self.n_alone <= other.n_alone
     }
 
     /// Whether something other than a bend speaks against one shape.
@@ -321,7 +335,7 @@ mod tests {
             reasons: reasons.to_vec(),
             ..ShapeStatement::nothing_met(tolerance)
         };
-        Candidate::at(Similarity::identity(), &shape, None)
+        Candidate::at(Similarity::identity(), &shape)
     }
 
     #[test]

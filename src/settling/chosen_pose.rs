@@ -18,6 +18,20 @@ pub struct ChosenPose {
 }
 
 impl ChosenPose {
+    /// A pose with others beside it, from the best on and each once. Those that are the pose itself are left out.
+    pub(super) fn new(
+        pose: Similarity,
+        others: impl Iterator<Item = Alternative>,
+        source: &Surface,
+    ) -> Self {
+        let part = source.measures().into();
+        let others = others.filter(|other| !same_pose(&other.target_from_source, &pose, &part));
+        Self {
+            target_from_source: pose,
+            alternatives: distinct(others, source),
+        }
+    }
+
     /// It becomes the result, with the others beside it.
     pub(super) fn taken_by(self, outcome: &mut MatchOutcome) {
         outcome.target_from_source = self.target_from_source;
@@ -32,50 +46,48 @@ impl ChosenPose {
         found_too: &[Candidate],
         source: &Surface,
     ) -> Self {
-        let as_likely = |target_from_source| Alternative {
-            target_from_source,
-            score_ratio: 1.0,
-            start: outcome.winner,
-        };
-        let part = source.measures().into();
         let found_too = found_too.iter().map(|other| {
-            let is_beaten = other.n_differences > winner.n_differences || winner.beats(other);
-            ranked(as_likely(other.pose), is_beaten)
+            let is_worse = other.n_differences > winner.n_differences || winner.beats(other);
+            let other = as_likely(other.pose, outcome);
+            if is_worse { beaten(other) } else { other }
         });
-        let before = ranked(as_likely(outcome.target_from_source), true);
-        let others = outcome.alternatives.iter();
-        let others = others.map(|other| ranked(*other, true));
-        let mut all: Vec<Alternative> = found_too
-            .chain([before])
-            .chain(others)
-            .filter(|other| !same_pose(&other.target_from_source, &winner.pose, &part))
-            .collect();
-        all.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
-        Self {
-            target_from_source: winner.pose,
-            alternatives: distinct(&all, source),
-        }
+        let before = as_likely(outcome.target_from_source, outcome);
+        let known = [before].into_iter().chain(outcome.alternatives.clone());
+        Self::new(winner.pose, found_too.chain(known.map(beaten)), source)
+    }
+}
+
+/// A pose that is as likely as the result of a match.
+pub(super) fn as_likely(target_from_source: Similarity, outcome: &MatchOutcome) -> Alternative {
+    Alternative {
+        target_from_source,
+        score_ratio: 1.0,
+        start: outcome.winner,
     }
 }
 
 /// An alternative, as bad as it counts where the shapes differ more under it.
-pub(super) fn ranked(other: Alternative, is_beaten: bool) -> Alternative {
-    let least = if is_beaten { MORE_DIFFERENCES } else { 0.0 };
+pub(super) fn beaten(other: Alternative) -> Alternative {
     Alternative {
-        score_ratio: other.score_ratio.max(least),
+        score_ratio: other.score_ratio.max(MORE_DIFFERENCES),
         ..other
     }
 }
 
-/// Of alternatives that are the same pose the first.
-pub(super) fn distinct(alternatives: &[Alternative], source: &Surface) -> Vec<Alternative> {
+/// Alternatives from the best on; of those that are the same pose the best.
+pub(super) fn distinct(
+    alternatives: impl Iterator<Item = Alternative>,
+    source: &Surface,
+) -> Vec<Alternative> {
     let part = source.measures().into();
+    let mut sorted: Vec<Alternative> = alternatives.collect();
+    sorted.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
     let mut distinct: Vec<Alternative> = Vec::new();
-    for other in alternatives {
+    for other in sorted {
         let is_known =
             |a: &Alternative| same_pose(&a.target_from_source, &other.target_from_source, &part);
         if !distinct.iter().any(is_known) {
-            distinct.push(*other);
+            distinct.push(other);
         }
     }
     distinct

@@ -5,7 +5,7 @@
 use rayon::prelude::*;
 
 use super::border_choice::MUCH_MORE;
-use super::candidate::{Candidate, FewPlaces, Judged, LITTLE_LESS, judged};
+use super::candidate::{Candidate, FewPlaces, Judged, judged};
 use super::chosen_pose::ChosenPose;
 use super::context::PairContext;
 use crate::assess::contact::{ContactSearch, FEW_NODES};
@@ -46,7 +46,7 @@ pub fn placed_as_a_whole(
     }
     let shape = context.shape(found, Outlines::Compared);
     let has_nothing_open = |result: &Candidate| result.met >= OVERHANGS && !result.differs();
-    if has_nothing_open(&Candidate::at(*found, &shape, None)) {
+    if has_nothing_open(&Candidate::at(*found, &shape)) {
         return Ok(None);
     }
     let distances = context.distances(1.0);
@@ -58,14 +58,14 @@ pub fn placed_as_a_whole(
         result,
         mut candidates,
     } = judged(context, (*found, Some(shape)), &poses, |pose, shape| {
-        few.candidate(pose, shape, false)
+        few.candidate(pose, shape)
     })?;
     if has_nothing_open(&result) {
         return Ok(None);
     }
     candidates.retain(|other| {
         let explains_more = other.met > MUCH_MORE * result.met
-            || result.differs() && other.met >= result.met - LITTLE_LESS;
+            || result.differs() && other.meets_as_much_as(&result);
         let is_explained = result.lies_much_closer_elsewhere_than(other, distances.noise);
         other.is_one_shape && explains_more && !is_explained
     });

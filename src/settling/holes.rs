@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 
 use rayon::prelude::*;
 
-use super::candidate::{Candidate, Judged, LITTLE_LESS, judged};
+use super::candidate::{Candidate, Judged, judged};
 use super::chosen_pose::ChosenPose;
 use super::context::PairContext;
 use super::refine_with_borders::{Least, Refinement};
@@ -38,7 +38,7 @@ pub fn placed_by_holes(
     };
     let is_open = |result: &Candidate| is_piece && result.differs() || result.n_alone > 0;
     let shape = context.shape(found, Outlines::Compared);
-    if !is_open(&Candidate::at(*found, &shape, None)) {
+    if !is_open(&Candidate::at(*found, &shape)) {
         return Ok(None);
     }
     let refinement = Refinement::new(context, 1.0, MAX_NODES);
@@ -49,11 +49,11 @@ pub fn placed_by_holes(
         result,
         candidates: mut better,
     } = judged(context, (*found, Some(shape)), &refined?, |pose, shape| {
-        Candidate::at(pose, shape, None)
+        Candidate::at(pose, shape)
     })?;
     better.retain(|other| {
         let differs_less = is_piece && result.differs() && !other.differs();
-        (differs_less || other.beats(&result)) && other.met >= result.met - LITTLE_LESS
+        (differs_less || other.beats(&result)) && other.meets_as_much_as(&result)
     });
     better.sort_by_key(|other| (other.n_differences, Reverse(other.n_holes)));
     let best = better.split_first();

@@ -35,7 +35,8 @@ pub use remove_trims::without_trims;
 
 use crate::assess::AssessSettings;
 use crate::monitor::{Cancelled, Monitor};
-use crate::registration::{Alternative, MatchOutcome, MatchSettings, Method, Surface, Termination};
+use crate::registration::{MatchOutcome, MatchSettings, Method, Surface, Termination};
+use chosen_pose::as_likely;
 
 /// Chooses and moves the pose of `outcome`, of source and target. `check` is what it will be assessed by. Nothing
 /// happens where the match was stopped, and where nothing was searched or refined.
@@ -94,11 +95,7 @@ fn hold(context: &PairContext<'_>, outcome: &mut MatchOutcome) -> Result<(), Can
         match pulled_aside(context, poses, Remainder::MayGrow)? {
             None => held.taken_by(outcome),
             Some(PulledAside::Rival) => {
-                let rival = Alternative {
-                    target_from_source: held.target_from_source,
-                    score_ratio: 1.0,
-                    start: outcome.winner,
-                };
+                let rival = as_likely(held.target_from_source, outcome);
                 outcome.alternatives.insert(0, rival);
             }
             Some(PulledAside::Worse) => {}

@@ -1,7 +1,8 @@
 //! Does a pose that borders and holes speak for lie aside of where the surfaces lie on each other?
 
-use super::candidate::{AS_CLOSE, FewPlaces, Judged, judged};
+use super::candidate::{FewPlaces, Judged, judged};
 use super::context::PairContext;
+use crate::assess::tolerance::AS_CLOSE;
 use crate::geometry::Similarity;
 use crate::monitor::Cancelled;
 
@@ -53,7 +54,7 @@ pub fn pulled_aside(
         context,
         (*by_surfaces, None),
         &[*by_borders],
-        |pose, shape| few.candidate(pose, shape, false),
+        |pose, shape| few.candidate(pose, shape),
     )?;
     let [after] = &candidates[..] else {
         return Ok(None);

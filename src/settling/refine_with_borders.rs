@@ -6,7 +6,7 @@ use crate::assess::borders::{BorderComparison, Borders, HOLES_THAT_HOLD};
 use crate::assess::contact::MAX_NODES;
 use crate::assess::evidence::EvidenceSearch;
 use crate::assess::least_squares::quantile;
-use crate::assess::tolerance::Distances;
+use crate::assess::tolerance::{AS_CLOSE, Distances};
 use crate::assess::trims;
 use crate::geometry::Similarity;
 use crate::monitor::Cancelled;
@@ -26,9 +26,7 @@ const LEAST_PAIRED: f64 = 0.3;
 const BETTER: f64 = 0.7;
 /// The misfit is what this share of the length of the borders does not exceed.
 const MOSTLY: f64 = 0.75;
-/// The surfaces may come to lie apart by so many times as much …
-const AS_CLOSE: f64 = 1.5;
-/// … and this share of what may remain.
+/// The surfaces may come to lie apart by [`AS_CLOSE`] times as much and this share of what may remain.
 const LITTLE_GAP: f64 = 0.5;
 
 /// The pose moved so that surfaces, borders and holes fit together; `None` where that would move it by

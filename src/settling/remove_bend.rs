@@ -19,7 +19,7 @@ const CLOSE: f64 = 0.4;
 /// A bend pushes a pose aside by so many times itself at most; a larger step is none of a bend.
 const FARTHEST: f64 = 12.0;
 /// The parts still meet but for this share of them.
-const AS_MUCH: f64 = 0.01;
+const LITTLE_LESS: f64 = 0.01;
 
 /// The pose without what a bend does to it: a motion of surfaces that leaves the smallest distances makes up for a
 /// part of the bend, and a smoothly curved part slides along itself by many times that. Motion, bends and an offset are
@@ -69,7 +69,7 @@ pub fn without_bend(
             let is_of_a_bend = far <= FARTHEST * bend
                 && bend <= first_bend.max(tolerance.springback)
                 && left <= first_left + UNREMARKABLE * tolerance.remainder
-                && contacts.share >= first_share - AS_MUCH;
+                && contacts.share >= first_share - LITTLE_LESS;
             return Ok((step > 0 && is_of_a_bend).then_some(moved));
         }
         moved = next;

@@ -17,7 +17,7 @@ const CLOSER: f64 = 0.5;
 /// … while the surfaces lie no farther apart but for this share of what may remain, …
 const LITTLE_GAP: f64 = 0.1;
 /// … and the parts still meet but for this share of them, which a trim of a few millimetres is.
-const AS_MUCH: f64 = 0.04;
+const LITTLE_LESS: f64 = 0.04;
 
 /// The pose without what outlines that lie apart do to it: a part that hardly holds along itself is pulled along, until
 /// the distances of its ends are alike. Surfaces, holes and the outlines that lie together say where it belongs.
@@ -94,12 +94,11 @@ struct Fitted {
 
 impl Fitted {
     fn of(evidence: &PoseEvidence<'_>) -> Self {
-        let holes = evidence.borders.holes.iter().map(|pair| pair.off.norm());
         Self {
             gap: evidence.contacts.typical_gap(f64::INFINITY),
             met: evidence.contacts.share,
             n_holes: evidence.borders.holes.len(),
-            worst_hole: holes.fold(0.0, f64::max),
+            worst_hole: evidence.borders.worst_hole(),
         }
     }
 
@@ -107,7 +106,7 @@ impl Fitted {
         self.n_holes >= before.n_holes
             && self.worst_hole <= CLOSER * before.worst_hole
             && self.gap <= before.gap + little
-            && self.met >= before.met - AS_MUCH
+            && self.met >= before.met - LITTLE_LESS
     }
 }
 

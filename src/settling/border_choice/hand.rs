@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::{AS_CLOSE, MOST_SLID, PoseComparison, Refined, SURELY_HELD, apart, ratio_by_borders};
+use super::{MOST_SLID, PoseComparison, Refined, SURELY_HELD, apart, ratio_by_borders};
 use crate::assess::free_motion::weak_motion;
+use crate::assess::tolerance::AS_CLOSE;
 use crate::geometry::Similarity;
 use crate::monitor::Cancelled;
 use crate::registration::MatchOutcome;

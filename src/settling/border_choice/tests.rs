@@ -36,7 +36,7 @@ fn a_few_borders_hold_no_pose_unless_a_hole_is_among_them() {
         (refined(0.4, 0.6, 0), refined(0.401, 0.6, 0), false),
         (refined(0.4, 0.6, 2), refined(0.4, 0.6, 1), false),
     ] {
-        let choice = comparison.choice(&result, true, &[rival]);
+        let choice = comparison.choice(&result, &result, &[rival]);
         assert_eq!(choice.is_some(), wins, "{} of {}", rival.held, result.held);
     }
 }
