@@ -1,4 +1,4 @@
-//! Everything that is said about a pose.
+//! The result of an assessment: a verdict with its reasons, and all that was measured.
 
 use serde::{Deserialize, Serialize};
 
@@ -30,7 +30,7 @@ pub struct Assessment {
     pub scale_check: ScaleCheck,
     /// The opposite hand.
     pub mirror_check: MirrorCheck,
-    /// Faceting and allowance: distances of this size mean nothing.
+    /// Faceting and allowance: distances of this size are negligible.
     pub noise: f64,
     /// How far the pose may be off; `None` in results of earlier versions.
     #[serde(default)]
@@ -74,7 +74,7 @@ impl Assessment {
     }
 }
 
-/// What is said of an alternative beside its distances.
+/// The statements about an alternative pose, beside its distances.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AlternativeStatements {
     /// How far its pose may be off; another one fits nearly as well by its nature.

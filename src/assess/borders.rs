@@ -34,7 +34,7 @@ const FLOATING: f64 = 0.5;
 /// A place is paired if nothing nearer than this share of its distance is beside its counterpart.
 const MUTUAL: f64 = 0.7;
 /// Where fewer of the smaller part's borders lie beside borders of the other, the parts are trimmed differently
-/// and borders say nothing about the shape.
+/// and borders are no evidence of the shape.
 pub(crate) const LEAST_PAIRED: f64 = 0.4;
 /// Distances of borders are stated at this share of their length.
 pub(super) const STATED: f64 = 0.9;
@@ -321,13 +321,12 @@ impl Borders {
         self.filtered(|_, pair| pair.kind == PairKind::Holes)
     }
 
-    /// Distance between borders that says nothing about the parts.
+    /// Distance between borders that is no evidence of a difference.
     pub(crate) fn unremarkable(&self) -> f64 {
         BORDER_FACETS * self.edge + RAGGED * self.ragged
     }
 
-    /// How far apart borders may lie: what facets and ragged trims do to them has nothing to do with how the
-    /// parts differ.
+    /// How far apart borders may lie: what facets and ragged trims do to them is no difference of the parts.
     pub(crate) fn limit(&self, tolerance: &ShapeTolerance) -> f64 {
         tolerance.remainder.hypot(self.unremarkable())
     }

@@ -55,7 +55,7 @@ pub(super) fn decide(assessment: &mut Assessment, grounds: &Grounds<'_>) {
     let read = read_errors(settings);
     let sizes = || sizes_far_apart(assessment).filter(|_| several.is_none());
     if let Some(units) = unit(assessment).or_else(sizes) {
-        // Whatever lies on the wrong size by chance says nothing of pose and shape.
+        // Whatever lies on the wrong size by chance is no evidence of pose and shape.
         assessment.verdict = units.severity();
         assessment.reasons = several.into_iter().chain([units]).chain(read).collect();
         if let Some(pose) = &mut assessment.pose {
@@ -101,7 +101,7 @@ pub(super) fn decide(assessment: &mut Assessment, grounds: &Grounds<'_>) {
     assessment.reasons = reasons;
 }
 
-/// What the reasons say about the pose alone.
+/// The statement about the pose that follows from the reasons.
 fn pose_kind(reasons: &[Reason]) -> PoseKind {
     let of = |reason: &Reason| match reason {
         Reason::EndedEarly { .. } => PoseKind::NotFound,
@@ -169,7 +169,7 @@ fn several_parts(assessment: &Assessment, n_parts: usize) -> Option<Reason> {
     })
 }
 
-/// A pose on what was read in part says nothing of the rest.
+/// Of a file that was read in part the rest was not compared.
 fn read_errors(settings: &AssessSettings) -> Option<Reason> {
     let (in_source, in_target) = (settings.n_source_errors, settings.n_target_errors);
     (in_source + in_target > 0).then_some(Reason::ReadErrors {
@@ -257,7 +257,7 @@ fn ambiguity(assessment: &Assessment) -> Option<Reason> {
     }
 }
 
-/// A match that began at poses that somebody gave says nothing of others. Pairs of equal nodes leave none.
+/// A match that began at given poses has not looked for others. Pairs of equal nodes leave none.
 fn others_not_sought(outcome: &MatchOutcome) -> Option<Reason> {
     let winner = outcome.starts.get(outcome.winner)?;
     let is_given = matches!(

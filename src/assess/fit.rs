@@ -66,7 +66,7 @@ pub(super) fn explaining(
 }
 
 impl Fit {
-    /// The offset of the sheets, where it can be told from a shift.
+    /// The offset of the sheets, where it is separable from a shift.
     pub(crate) fn separate_offset(&self) -> Option<f64> {
         self.is_separable.then_some(self.offset)
     }
@@ -169,7 +169,7 @@ impl Fit {
             let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
             let explained = axes.map(|axis| row(&pair.hole.center, &axis, 0.0).dot(&found));
             let left = pair.off - Vector3::from(explained);
-            // Across its sheet the middle of a hole says what the surface says.
+            // Across its sheet the middle of a hole moves with the surface, which is compared already.
             HoleLeft {
                 off: left - pair.hole.normal * left.dot(&pair.hole.normal),
                 wider: pair.wider,

@@ -120,7 +120,7 @@ fn solve<const N: usize>(matrix: &SMatrix<f64, N, N>, right: &SVector<f64, N>) -
 }
 
 /// A weight for each value: its area, less the farther the value lies from zero (Tukey's biweight with the median
-/// distance as its scale). `floor` is a distance that means nothing.
+/// distance as its scale). Distances up to `floor` are negligible.
 pub(super) fn robust_weights(values: &[f64], areas: &[f64], floor: f64) -> Vec<f64> {
     let sizes = values.iter().map(|v| v.abs()).zip(areas.iter().copied());
     let median = quantile(&mut sizes.collect::<Vec<_>>(), 0.5);

@@ -1,12 +1,12 @@
 //! Is the pose right? Distances, uncertainty and shape are measured anew on the full meshes; scores of alternatives
 //! and of the opposite hand are those of the search.
 //!
-//! From the bottom up: `tolerance` says how far parts may differ; `least_squares` has the normal equations of all that
-//! is fitted; `contact` and `borders` find where two parts meet under a pose, `evidence` joins what they found, `fit`
-//! splits the gaps into a motion, an offset and bends; `trims`,
-//! `outline_shift`, `stretch` and `shape` say how the parts differ, `free_motion` how far the surfaces hold the part,
-//! `uncertainty` how far the pose may be off. `statements` asks them of a pose, and `decide` makes the verdict of an
-//! [`Assessment`]. The layer above, `settling`, chooses the pose by the same measures before it is assessed.
+//! From the bottom up: `tolerance` limits how far parts may differ; `least_squares` has the normal equations of all
+//! that is fitted; `contact` and `borders` find where two parts meet under a pose, `evidence` joins what they found,
+//! `fit` splits the gaps into a motion, an offset and bends; `trims`, `outline_shift`, `stretch` and `shape` measure
+//! how the parts differ, `free_motion` how far the surfaces hold the part, `uncertainty` how far the pose may be off.
+//! `statements` makes the statements about a pose from them, and `decide` makes the verdict of an [`Assessment`]. The
+//! layer above, `settling`, chooses the pose by the same measures before it is assessed.
 
 mod ambiguity;
 mod assessment;

@@ -1,4 +1,4 @@
-//! Do outlines and holes say the same of where a part belongs? The holes of one version may all lie farther along than
+//! Do outlines and holes agree on where a part belongs? The holes of one version may all lie farther along than
 //! those of another, and where the surfaces leave the part free to slide, the pose follows them.
 
 use super::borders::{BorderPair, Borders, PairKind};

@@ -131,7 +131,7 @@ pub enum Reason {
 }
 
 impl Reason {
-    /// Whether it says that the parts are in different units: nothing else that was found means anything then.
+    /// Whether it states that the parts are in different units: nothing else that was found is evidence then.
     pub fn is_of_units(&self) -> bool {
         matches!(
             self,

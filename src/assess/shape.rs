@@ -28,13 +28,13 @@ pub(crate) const OVERHANGS: f64 = 0.95;
 const ELSEWHERE: f64 = 0.03;
 /// A remainder of so many tolerances is that of a different part where most of the area exceeds the tolerance.
 const DIFFERENT: f64 = 6.0;
-/// Distances up to so many times the faceting, or [`UNREMARKABLE`] of the tolerance, mean nothing at most of the
+/// Distances up to so many times the faceting, or [`UNREMARKABLE`] of the tolerance, are negligible at most of the
 /// area.
 pub(crate) const FACETING: f64 = 3.0;
 const SAME_SHARE: f64 = 0.8;
 /// The mean of how far holes lie off is known to so many of its standard errors.
 const SURELY: f64 = 3.0;
-/// Fewer holes tell neither their mean nor how much they scatter.
+/// Fewer holes determine neither their mean nor how much they scatter.
 const LEAST_HOLES: usize = 4;
 /// Patches that are searched for the place of the largest difference: 2 to this power.
 const PLACE_LEVELS: u32 = 5;
@@ -214,7 +214,7 @@ pub struct ShapeStatement {
     /// source lies in front of the target; `None` where it is nothing beside the facets, or not
     /// separable.
     pub offset: Option<f64>,
-    /// False where normals vary too little to tell an offset from a shift of the part.
+    /// False where normals vary too little to distinguish an offset from a shift of the part.
     pub is_offset_separable: bool,
     /// True if the pose was to be that of the mid-surfaces, without the offset.
     #[serde(default)]

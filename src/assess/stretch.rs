@@ -78,7 +78,7 @@ pub(super) fn stretch(evidence: &PoseEvidence<'_>, tolerance: &ShapeTolerance) -
     let gaps = Gaps::of(&search.at(&evidence.pose)?, &frame);
     let (_, before) = gaps.explained(N_SMOOTH, evidence.noise);
     if before <= evidence.noise {
-        // What facets leave open says nothing, least of all about the length of an extruded part.
+        // What facets leave open determines nothing, least of all the length of an extruded part.
         return None;
     }
     let (found, mut after) = gaps.explained(N, evidence.noise);

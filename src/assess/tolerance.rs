@@ -96,7 +96,7 @@ impl ShapeTolerance {
         }
     }
 
-    /// Distances up to this mean nothing.
+    /// Distances up to this are negligible.
     #[must_use]
     pub fn unremarkable(&self) -> f64 {
         UNREMARKABLE * self.remainder
@@ -144,7 +144,7 @@ pub(crate) struct Distances {
     pub(crate) refined_border_reach: f64,
     /// Surfaces within it leave a motion free: what overlaps, and what springback explains.
     pub(crate) free_limit: f64,
-    /// Faceting of both meshes and the allowance: distances of this size mean nothing.
+    /// Faceting of both meshes and the allowance: distances of this size are negligible.
     pub(crate) noise: f64,
     /// The largest offset between two skins of one sheet; what is larger is a difference of the shapes.
     pub(super) most_offset: f64,

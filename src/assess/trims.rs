@@ -1,5 +1,5 @@
 //! Were the parts trimmed differently? A stamped part before its last trim has the surface and the holes of
-//! the crash part and an outline farther out, which then says nothing about pose and shape.
+//! the crash part and an outline farther out, which is then no evidence of pose and shape.
 
 use serde::{Deserialize, Serialize};
 
@@ -38,7 +38,7 @@ pub struct BorderApart {
 
 /// What is left of the borders of parts that were trimmed differently.
 pub(crate) struct OtherTrim {
-    /// The borders that say something about the parts.
+    /// The borders that are evidence.
     pub(crate) left: Borders,
     /// How far the others lie apart, at 90 % of them.
     pub(super) apart: f64,
@@ -52,7 +52,7 @@ pub(crate) fn other_trim(
     tolerance: &ShapeTolerance,
 ) -> Option<OtherTrim> {
     let limit = evidence.borders.limit(tolerance);
-    let outlines = Outlines::of(evidence, limit)?;
+    let outlines = SplitOutlines::of(evidence, limit)?;
     if outlines.share_apart() <= 1.0 - STATED
         || stretch::explains_outlines(evidence, limit)
         || outline_aside_of_holes(&evidence.borders, &outlines.fit, limit).is_some()
@@ -65,10 +65,10 @@ pub(crate) fn other_trim(
     })
 }
 
-/// The fit of the evidence. Borders that do not say where the part belongs are taken out of it; `limit` is how far
-/// they may lie apart. O(places).
+/// The fit of the evidence. Borders that do not determine where the part belongs are taken out of it; `limit` is how
+/// far they may lie apart. O(places).
 pub(crate) fn trusted_fit(evidence: &mut PoseEvidence<'_>, limit: f64) -> Fit {
-    match Outlines::of(evidence, limit) {
+    match SplitOutlines::of(evidence, limit) {
         Some(outlines) if outlines.share_apart() > MOST_APART => {
             evidence.borders = outlines.trusted();
             Fit::of(evidence)
@@ -97,8 +97,8 @@ pub(super) fn farthest_apart(borders: &Borders, left: &[f64], limit: f64) -> Opt
     apart.max_by(|a, b| a.by.total_cmp(&b.by))
 }
 
-/// The outlines of which some lie apart whatever small motion or bend is tried.
-struct Outlines<'a> {
+/// The outlines, split into those that lie together and those that lie apart whatever small motion or bend is tried.
+struct SplitOutlines<'a> {
     borders: &'a Borders,
     /// Of each pair of borders, whether it is of outlines that lie apart.
     is_apart: Vec<bool>,
@@ -106,7 +106,7 @@ struct Outlines<'a> {
     fit: Fit,
 }
 
-impl<'a> Outlines<'a> {
+impl<'a> SplitOutlines<'a> {
     /// `None` where hardly any lies apart. O(places), less where they lie together at once.
     fn of(evidence: &'a PoseEvidence<'_>, limit: f64) -> Option<Self> {
         let borders = &evidence.borders;

@@ -73,17 +73,16 @@ pub enum PartDirection {
     Oblique,
 }
 
-/// The uncertainty of a pose: a delete-group jackknife over 16 patches of the smaller part (Shao and
-/// Tu 1995). Each patch in turn is left out, the pose that fits the others is found, and the spread of
-/// these poses is the uncertainty. Springback, which is alike over a whole patch, counts in full, while
-/// the covariance of millions of single points would call it nothing. It says nothing about a wholly
-/// different pose that fits as well; rivals do.
+/// The uncertainty of a pose: a delete-group jackknife over 16 patches of the smaller part (Shao and Tu 1995). Each
+/// patch in turn is left out, the pose that fits the others is found, and the spread of these poses is the uncertainty.
+/// Springback, which is alike over a whole patch, counts in full, while the covariance of millions of single points
+/// would neglect it. It is no measure of a wholly different pose that fits as well, which the search for rivals is for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PoseUncertainty {
     /// Largest uncertainty of any source node, in target length units.
     #[serde(with = "any_float")]
     pub largest: f64,
-    /// Unit direction in which that node may be off, in the target's frame; its sign means nothing.
+    /// Unit direction in which that node may be off, in the target's frame; its sign is arbitrary.
     #[serde(with = "xyz")]
     pub direction: Vector3,
     /// The same in terms of the part.
@@ -92,7 +91,7 @@ pub struct PoseUncertainty {
     #[serde(with = "xyz")]
     pub place: Point3,
     /// Half the thickness of the sheet, which is part of the uncertainty where the parts are so flat that
-    /// nothing tells skin on mid-surface from a shift; else 0.
+    /// nothing distinguishes skin on mid-surface from a shift; else 0.
     #[serde(default)]
     pub unknown_offset: f64,
     #[serde(with = "xyz")]
@@ -141,7 +140,7 @@ impl PoseUncertainty {
         let (largest, place) = places
             .map(|p| (found.at(&p), p))
             .max_by(|a, b| a.0.total_cmp(&b.0))?;
-        // Beyond the size of the part a linear step means nothing more.
+        // Beyond the size of the part a linear step is no estimate any more.
         found.largest = largest.min(source.measures().diagonal * pose.scale);
         found.place = place;
         found.direction = found.direction_at(&place);
@@ -234,10 +233,9 @@ fn bent(bend: f64) -> [SmallMotion; 3] {
     })
 }
 
-/// Motions whose squares sum to the square of the uncertainty: those of the jackknife, and the step by which
-/// borders, an offset of the sheets or a bend (`unbent`) would move the pose. Where an offset is what the gaps are, it
-/// is solved for with every motion. With them the motion that cannot be told from an offset of one, if there
-/// is one.
+/// Motions whose squares sum to the square of the uncertainty: those of the jackknife, and the step by which borders,
+/// an offset of the sheets or a bend (`unbent`) would move the pose. Where an offset is what the gaps are, it is solved
+/// for with every motion. With them the motion that is not separable from an offset of one, if there is one.
 fn replicates(evidence: &PoseEvidence<'_>, unbent: Option<Six>) -> (Vec<Six>, Option<Six>) {
     let (contacts, noise) = (&evidence.contacts, evidence.noise);
     let gaps: Vec<f64> = contacts.list.iter().map(|c| c.gap).collect();

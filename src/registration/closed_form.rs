@@ -17,7 +17,7 @@ pub enum Motion {
     Similarity,
 }
 
-/// The best motion for given pairs, with what the pairs say about its certainty.
+/// The best motion for given pairs, with what the pairs show of its certainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PairFit {
     /// `target_from_source`, proper (determinant +1).
@@ -29,7 +29,7 @@ pub struct PairFit {
     /// The best mirrored fit (determinant −1) of the same pairs, with the same scale rule.
     pub mirrored: Similarity,
     /// Root mean square distance of the mirrored fit. Below `rmse` the pairs speak for the
-    /// opposite hand; equal for flat points, which cannot tell.
+    /// opposite hand; equal for flat points, which have no hand.
     pub mirrored_rmse: f64,
 }
 

@@ -8,7 +8,7 @@ use crate::geometry::Point3;
 const FAR: f64 = 4.0;
 /// Exchanging two partners is worth a word if it makes the fit so many times better.
 const EXCHANGED: f64 = 4.0;
-/// Distances below this share of the points' spread mean nothing.
+/// Distances below this share of the points' spread are negligible.
 const NEGLIGIBLE: f64 = 1e-6;
 
 /// What is probably wrong with picked pairs.

@@ -133,7 +133,7 @@ pub struct Alternative {
     pub start: usize,
 }
 
-/// What the pairs say about the opposite hand.
+/// How well the opposite hand fits.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MirrorCheck {
     /// Root mean square distance of the final pairs under the best mirrored motion; compare with

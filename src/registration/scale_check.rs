@@ -6,7 +6,7 @@ use super::surface::Surface;
 use crate::geometry::serial::any_float;
 use crate::units::LengthUnit;
 
-/// What sizes and pairs say about the units of both meshes.
+/// What sizes and pairs show of the units of both meshes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ScaleCheck {
     /// Target size over source size: root of the ratio of the surface areas.

@@ -108,7 +108,7 @@ impl Surface {
         })
     }
 
-    /// `of_edges` finds what the edges of the mesh tell, given the area vectors of its triangles: its border and
+    /// `of_edges` finds what depends on the edges of the mesh, given the area vectors of its triangles: its border and
     /// its chordal error.
     fn assemble<F>(
         mesh: TriMesh,

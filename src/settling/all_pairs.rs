@@ -13,20 +13,20 @@ use crate::monitor::Cancelled;
 
 /// Poses closer than this share of what may remain of the distances are one.
 const SAME: f64 = 0.2;
-/// Holes and borders speak for the pose under which they lie apart by less than this share of what they do under the
+/// Holes and borders support the pose under which they lie apart by less than this share of what they do under the
 /// other. An addendum keeps borders apart under both.
 const CLOSER_HOLES: f64 = 0.9;
 const CLOSER_BORDERS: f64 = 0.95;
 /// What they gain at least, as a share of what may remain of the distances.
 const LEAST_GAIN: f64 = 0.3;
-/// Where holes say nothing, the surfaces lie apart by at most this share too, over 95 % of the area: a flange of
+/// Where holes do not decide, the surfaces lie apart by at most this share too, over 95 % of the area: a flange of
 /// another version turns a part that otherwise fits, and hardly comes closer.
 const CLOSER_SURFACES: f64 = 0.75;
 /// Distances that differ by a smaller factor are the same.
 const SAME_DISTANCE: f64 = 1.02;
 
 /// Whether the second pose, which keeps all pairs, is better than the first, which keeps the closest ones: as much of
-/// the parts meets, they lie as close, and their holes lie closer together, or where those say nothing their borders
+/// the parts meets, they lie as close, and their holes lie closer together, or where those do not decide their borders
 /// and clearly their surfaces. What only one part has pulls at all pairs, and holes and borders apart.
 /// O(border edges + nodes · log triangles).
 pub fn is_better_with_all_pairs(
@@ -75,9 +75,9 @@ struct Met {
     far: f64,
 }
 
-/// Whether the holes speak for the second pose (`Greater`) or for the first: more of them have their
+/// Whether the holes support the second pose (`Greater`) or the first (`Less`): more of them have their
 /// counterpart there and no more lie where the other part is solid, or as many and they lie closer together, as
-/// `is_less` says.
+/// `is_less` decides.
 fn by_holes(
     before: &Borders,
     after: &Borders,
@@ -87,7 +87,7 @@ fn by_holes(
     let has_more =
         |a: &Borders, b: &Borders| a.holes.len() > b.holes.len() && n_missing(a) <= n_missing(b);
     let off = |borders: &Borders| {
-        // Across its sheet the middle of a hole says what the surface says.
+        // Across its sheet the middle of a hole moves with the surface, which is compared already.
         let within = |pair: &HolePair| pair.off.cross(&pair.hole.normal).norm_squared();
         let sum: f64 = borders.holes.iter().map(within).sum();
         (sum / borders.holes.len().max(1) as f64).sqrt()

@@ -112,7 +112,7 @@ impl Beside<'_> {
         same_pose(pose, &self.winner.pose, &self.part)
     }
 
-    /// An alternative with what the shapes say of it where it settles.
+    /// An alternative, rated by the shapes where it settles.
     fn rated(&self, other: Alternative, candidate: &Candidate) -> Alternative {
         let (winner, noise) = (self.winner, self.distances.noise);
         if winner.beats(candidate) {

@@ -1,5 +1,5 @@
-//! The choice between poses that surfaces do not tell apart: where a part can slide on the other, its
-//! borders and holes say where it belongs.
+//! The choice between poses that surfaces do not distinguish: where a part can slide on the other, its borders and
+//! holes determine where it belongs.
 
 mod hand;
 
@@ -41,7 +41,7 @@ const ONE_SETTLED: f64 = 0.5;
 const MOST_ROOTS: usize = 3;
 /// Poses looked at for that.
 const MOST_ROOTS_TRIED: usize = 8;
-/// Alternatives that are told, unless the match found more.
+/// Alternatives that are reported, unless the match found more.
 const MOST_ALTERNATIVES: usize = 5;
 /// Turns between poses of one family: cosine of 10°.
 const SAME_WAY: f64 = 0.985;
@@ -55,11 +55,11 @@ const MORE_HELD: f64 = 0.005;
 const BY_CHANCE: f64 = 0.15;
 /// So much less of the borders where they belong makes a pose count as twice as bad.
 const TWICE_AS_BAD: f64 = 0.05;
-/// Distances of surfaces up to this share of the tolerance mean nothing.
+/// Distances of surfaces up to this share of the tolerance are negligible.
 const NO_GAP: f64 = 0.1;
-/// Borders of which so much lies where it belongs speak for a pose.
+/// Borders of which so much lies where it belongs support a pose.
 const SURELY_HELD: f64 = 0.9;
-/// With less than this the borders speak against a pose.
+/// With less than this the borders contradict a pose.
 const HARDLY_HELD: f64 = 0.5;
 /// Poses that are not refined yet may lie so many times as far apart as springback explains.
 const ROUGHLY: f64 = 2.0;
@@ -163,7 +163,7 @@ pub fn held_by_borders(
 }
 
 /// The motion along which borders and holes are looked for: what the surfaces leave free, or hardly resist where the
-/// holes say that the part lies aside.
+/// holes show that the part lies aside.
 fn motion_to_search(context: &PairContext<'_>, pose: &Similarity) -> Option<FreeMotion> {
     let PairContext { source, target, .. } = *context;
     let limit = context.distances(pose.scale).free_limit;
@@ -174,7 +174,7 @@ fn motion_to_search(context: &PairContext<'_>, pose: &Similarity) -> Option<Free
     weakest_motion(source, target, pose, limit).or(weak)
 }
 
-/// Whether the holes say that the part lies aside along itself: each part has some that the other lacks, or of those
+/// Whether the holes show that the part lies aside along itself: each part has some that the other lacks, or of those
 /// that have a counterpart most do not lie on it.
 fn holes_lie_aside(context: &PairContext<'_>, pose: &Similarity) -> bool {
     let distances = context.distances(pose.scale);
@@ -187,10 +187,10 @@ fn holes_lie_aside(context: &PairContext<'_>, pose: &Similarity) -> bool {
         || n_off > 0 && 2 * n_off >= borders.holes.len()
 }
 
-/// A difference of shares without what says nothing: places along the borders differ, so that two poses of one
+/// A difference of shares beyond what is negligible: places along the borders differ, so that two poses of one
 /// quality never hold quite the same share.
-fn apart(difference: f64, nothing: f64) -> f64 {
-    difference.signum() * (difference.abs() - nothing).max(0.0)
+fn apart(difference: f64, negligible: f64) -> f64 {
+    difference.signum() * (difference.abs() - negligible).max(0.0)
 }
 
 /// How much worse a pose is of whose borders so much less lies where it belongs.
@@ -247,8 +247,8 @@ impl Refined {
     }
 
     /// How much less of the borders lies where it belongs than under the winner. Where each part has a piece that the
-    /// other lacks, borders beyond the other part say nothing: shifting the parts by one hole of a row leaves more of
-    /// them alone and is as likely.
+    /// other lacks, borders beyond the other part are no evidence: shifting the parts by one hole of a row leaves more
+    /// of them alone and is as likely.
     fn behind(&self, winner: &Self) -> f64 {
         if winner.met < OVERHANGS {
             winner.held_of_paired() - self.held_of_paired()
@@ -323,7 +323,7 @@ impl<'a> PoseComparison<'a> {
         Ok(closer.and_then(|pose| self.measured(pose)))
     }
 
-    /// The rival that the borders speak for; `None` where they speak for the result, which may win only if its surfaces
+    /// The rival that the borders support; `None` where they support the result, which may win only if its surfaces
     /// lie as close as under the closest pose.
     fn choice(&self, result: &Refined, closest: &Refined, rivals: &[Refined]) -> Option<Refined> {
         let is_close = result.is_as_close_as(closest, &self.distances);
@@ -465,7 +465,7 @@ impl<'a> PoseComparison<'a> {
 
     /// Of poses whose surfaces lie farther apart than those of the winner the one under which the most holes have their
     /// counterpart, if more of them do: springback may lay a bent profile closer a piece along itself, and the shapes
-    /// tell which pose is right.
+    /// decide which pose is right.
     fn with_most_holes<'s>(
         &self,
         winner: &Refined,
@@ -488,7 +488,7 @@ impl<'a> PoseComparison<'a> {
         })
     }
 
-    /// The other poses with what their borders say of them; `before` is the result where a rival takes its place.
+    /// The other poses, rated by their borders; `before` is the result where a rival takes its place.
     fn alternatives(
         &self,
         winner: &Refined,

@@ -1,4 +1,4 @@
-//! A pose and what the shapes under it say for and against it.
+//! A pose with the evidence of the shapes for and against it.
 
 use rayon::prelude::*;
 
@@ -127,7 +127,7 @@ pub(super) struct Candidate {
     /// Holes with a counterpart, and those where the other part is solid.
     pub(super) n_holes: usize,
     pub(super) n_alone: usize,
-    /// Whether outlines say nothing of the pose: one part is trimmed farther out, or few of them lie beside others.
+    /// Whether outlines are no evidence of the pose: one part is trimmed farther out, or few of them lie beside others.
     pub(super) outlines_are_no_evidence: bool,
     /// Whether outlines lie apart by more than is accepted.
     outlines_lie_apart: bool,
@@ -193,8 +193,8 @@ impl Candidate {
     }
 
     /// Whether the parts, each of which has a piece that the other lacks, share enough under this pose too, and what
-    /// they share is as much alike. That more overlaps under one of two such poses says nothing: a row of like features
-    /// may be shifted by one of them.
+    /// they share is as much alike. That more overlaps under one of two such poses is no evidence: a row of like
+    /// features may be shifted by one of them.
     pub(super) fn fits_elsewhere_as_well_as(&self, other: &Self, distances: &Distances) -> bool {
         let is_as_close = |own: f64, other: f64| own <= distances.as_close_as(UNREMARKABLE, other);
         self.only_overhangs
@@ -214,7 +214,7 @@ impl Candidate {
         fits_as_much.then(|| (apart(self) / apart(other)).max(1.0))
     }
 
-    /// Whether the outlines say that the part belongs here.
+    /// Whether the outlines are evidence, and lie together.
     fn has_outlines_together(&self) -> bool {
         !self.outlines_are_no_evidence && !self.outlines_lie_apart
     }
@@ -286,7 +286,7 @@ impl Candidate {
     }
 }
 
-/// What a reason against one shape says against a pose.
+/// How a reason against one shape counts against a pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Evidence {
     /// Nothing: a bend is there under every pose.

@@ -1,5 +1,5 @@
 //! The search along the motions that surfaces leave free: a plate, a rail or a cup lies on its counterpart
-//! at many places, and only borders and holes tell them apart.
+//! at many places, and only borders and holes distinguish these.
 
 use nalgebra::SVector;
 use rayon::prelude::*;
@@ -49,7 +49,7 @@ const MOST_REFINED: usize = 600;
 const MOST_FINISHED: usize = 120;
 /// Largest number of poses of the lattice; it is made coarser where it would have more.
 const MOST_POSES: f64 = 400_000.0;
-/// Borders that run in directions farther apart than this are not the same: cosine of 37°.
+/// Borders that run in directions farther apart than this are not the same border: cosine of 37°.
 const PARALLEL: f32 = 0.8;
 /// In a step a border counts for a place up to so many times the distance across it beyond which it does not.
 const ALONG: f64 = 2.0;
@@ -231,7 +231,7 @@ fn spread(middle: f64, room: f64, step: f64) -> Vec<f64> {
 
 /// A motion of the smaller part, and how badly its borders fit.
 #[derive(Clone, Copy)]
-struct Candidate {
+struct RatedMotion {
     motion: Similarity,
     loss: f64,
 }
@@ -329,11 +329,11 @@ impl BorderSearch {
         begun.sort_by(|a, b| a.0.total_cmp(&b.0));
         begun.truncate(MOST_FINISHED);
         context.check()?;
-        let mut refined: Vec<Candidate> = begun
+        let mut refined: Vec<RatedMotion> = begun
             .par_iter()
             .map(|&(_, begun)| {
                 let motion = motion(axes, &self.refined(axes, begun, then));
-                Candidate {
+                RatedMotion {
                     loss: self.loss(&self.data, &motion, CUTS[2] * self.cut),
                     motion,
                 }

@@ -1,7 +1,7 @@
 //! The last steps of a match: the pose that was refined on the full meshes is moved, or another one takes its place,
 //! before it is assessed. [`settle`] is the list of the steps, in their order; each answers one question.
 //!
-//! They measure what `assess` measures: `candidate` says what the shapes say for and against a pose,
+//! They measure what `assess` measures: `candidate` weighs the evidence of the shapes for and against a pose,
 //! `refine_with_borders` moves one to where surfaces, borders and holes fit together, `free_motion_search` looks along
 //! what surfaces leave free. `context` is what all of them are given, `chosen_pose` what they give back.
 

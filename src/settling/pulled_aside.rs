@@ -1,4 +1,4 @@
-//! Does a pose that borders and holes speak for lie aside of where the surfaces lie on each other?
+//! Does a pose that borders and holes support lie aside of where the surfaces lie on each other?
 
 use super::candidate::{FewPlaces, Judged, judged};
 use super::context::PairContext;
@@ -10,7 +10,7 @@ use crate::monitor::Cancelled;
 /// so many tolerances more.
 const LITTLE_REMAINDER: f64 = 0.25;
 
-/// What speaks against a pose that borders and holes speak for.
+/// What speaks against a pose that borders and holes support.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PulledAside {
     /// It is worse than the one that the surfaces found.
@@ -28,13 +28,12 @@ pub enum Remainder {
     MayNotGrow,
 }
 
-/// What speaks against a pose that borders and holes speak for, beside the one that the surfaces found: that one has
+/// What speaks against a pose that borders and holes support, beside the one that the surfaces found: that one has
 /// surely fewer differences, or what remains besides a bend has clearly grown where it may not, or a piece of the parts
-/// lies on each other where all of them lies apart. Springback keeps surfaces farther
-/// apart than either pose, so that their distance alone does not tell: an addendum all round that ends anywhere may
-/// pull a hood aside by 30 mm. `None` where nothing does; poses that lie within the tolerance of each other are as
-/// good.
-/// O(border edges + nodes · log triangles).
+/// lies on each other where all of them lies apart. Springback keeps surfaces farther apart than either pose, so that
+/// their distance alone does not decide: an addendum all round that ends anywhere may pull a hood aside by 30 mm.
+/// `None` where nothing does; poses that lie within the tolerance of each other are as good. O(border edges + nodes ·
+/// log triangles).
 pub fn pulled_aside(
     context: &PairContext<'_>,
     [by_surfaces, by_borders]: [&Similarity; 2],

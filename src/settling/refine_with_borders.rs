@@ -30,7 +30,7 @@ const MOSTLY: f64 = 0.75;
 const LITTLE_GAP: f64 = 0.5;
 
 /// The pose moved so that surfaces, borders and holes fit together; `None` where that would move it by
-/// no more than the borders are cut into facets, where the borders do not say where the part belongs (parts
+/// no more than the borders are cut into facets, where the borders do not determine where the part belongs (parts
 /// that are trimmed differently), or where neither they nor the surfaces fit better. O(steps · nodes · log triangles).
 pub fn refined_with_borders(
     context: &PairContext<'_>,

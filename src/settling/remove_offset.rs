@@ -16,7 +16,7 @@ const FARTHEST: f64 = 10.0;
 
 /// The pose without what an offset of the sheets along their normals does to it: pose and offset are
 /// solved together, the offset as the seventh unknown. `None` where there is none beside the facets, or
-/// where it cannot be told from a shift. O(steps · nodes · log triangles).
+/// where it is not separable from a shift. O(steps · nodes · log triangles).
 pub fn without_offset(
     context: &PairContext<'_>,
     pose: &Similarity,

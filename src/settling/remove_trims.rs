@@ -20,10 +20,10 @@ const LITTLE_GAP: f64 = 0.1;
 const LITTLE_LESS: f64 = 0.04;
 
 /// The pose without what outlines that lie apart do to it: a part that hardly holds along itself is pulled along, until
-/// the distances of its ends are alike. Surfaces, holes and the outlines that lie together say where it belongs.
+/// the distances of its ends are alike. Surfaces, holes and the outlines that lie together determine where it belongs.
 /// `None` where the parts are not trimmed differently under the pose, where they have not two holes in common, where
-/// these come no closer, and where the surfaces alone, with their beads, say otherwise: the holes of one version may all
-/// have been moved. O(steps · (border edges + nodes · log triangles)).
+/// these come no closer, and where the surfaces alone, with their beads, contradict it: the holes of one version may
+/// all have been moved. O(steps · (border edges + nodes · log triangles)).
 pub fn without_trims(
     context: &PairContext<'_>,
     pose: &Similarity,
@@ -68,10 +68,10 @@ pub fn without_trims(
     let alone = context.stepped(&mut search, &moved, STEPS, |evidence| {
         Some((evidence.closer_surfaces(), still))
     })?;
-    let say_otherwise = search.at(&alone).is_some_and(|evidence| {
+    let contradict = search.at(&alone).is_some_and(|evidence| {
         left_with_beads(&evidence, &Fit::of_surfaces(&evidence)) + little < left
     });
-    Ok((!say_otherwise).then_some(moved))
+    Ok((!contradict).then_some(moved))
 }
 
 /// What a fit leaves of the distances of the surfaces on all but a small share of them.

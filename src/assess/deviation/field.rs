@@ -47,7 +47,7 @@ pub struct DeviationField {
     /// Distance beyond which nothing is a counterpart.
     pub reach: f64,
     /// The constant part of the distances, apart from what a small rigid move would change; `None`
-    /// where the two cannot be told apart, as on a flat plate, or where there is no sign.
+    /// where the two are not separable, as on a flat plate, or where there is no sign.
     pub constant: Option<ConstantPart>,
 }
 
@@ -221,7 +221,7 @@ impl Way<'_> {
         }
     }
 
-    /// The normal that tells on which side of the model a point lies whose closest point is `hit`:
+    /// The normal that determines on which side of the model a point lies whose closest point is `hit`:
     /// that of the face, the sum of both at an edge, the angle-weighted mean at a corner
     /// (Bærentzen and Aanæs 2005).
     fn normal_at(&self, hit: &SurfaceHit) -> Vector3 {
@@ -292,7 +292,7 @@ impl Judged {
 /// Number that stands for no triangle.
 const NOBODY: u32 = u32::MAX;
 
-/// What is needed to tell the sides of a surface.
+/// What is needed to distinguish the sides of a surface.
 struct Sides {
     /// For each edge of each triangle the triangle beyond it; [`NOBODY`] at borders and where three
     /// or more meet.

@@ -1,5 +1,5 @@
-//! Does one part have a bead, an emboss or a dent that the other lacks? It may be too small to show in what
-//! most of the area says.
+//! Does one part have a bead, an emboss or a dent that the other lacks? It may be too small to show in the figures of
+//! most of the area.
 
 use crate::assess::contact::Contact;
 use crate::assess::evidence::PoseEvidence;

@@ -8,7 +8,7 @@ use crate::geometry::{Point3, Vector3};
 /// there the surface slides on itself.
 const RANK_TOLERANCE: f64 = 1e-9;
 /// Independent places that the residuals stand for. What a part of another shape leaves of them is
-/// the same over large areas, so thousands of points say no more than a few places.
+/// the same over large areas, so thousands of points determine no more than a few places.
 const N_PLACES: f64 = 16.0;
 
 /// How much each unknown changes a residual.

@@ -383,7 +383,7 @@ impl<'a> MultiStart<'a> {
     }
 
     /// How far the searched meshes lie apart when perfectly placed. Two reductions of one sheet
-    /// put their vertices at different places, so they differ by more than their own facets say.
+    /// put their vertices at different places, so they differ by more than their own facets do from the sheet.
     fn expected_error(&self) -> f64 {
         match self.input.reduced {
             None => natural_floor(self.input.source, self.input.target),
@@ -394,7 +394,7 @@ impl<'a> MultiStart<'a> {
     }
 
     /// Score of the opposite hand over that of `winner`, and its pose: a part that is nearly its own mirror image fits
-    /// well with the wrong hand, and only the comparison tells. The hand is looked for where the mirror
+    /// well with the wrong hand, and only the comparison decides. The hand is looked for where the mirror
     /// images of the winner lie and, unless the winner `is_confident`, by the wide search. `None` if it
     /// found no pose.
     pub(crate) fn opposite_hand(

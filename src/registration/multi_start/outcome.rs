@@ -37,7 +37,7 @@ pub(crate) fn decide(
     let opposite = if hand_is_known || monitor.stop_requested() {
         None
     } else {
-        // Starts of the other hand are no starts of this match, so nobody hears of them.
+        // Starts of the other hand are no starts of this match, so they are not reported.
         let unobserved = monitor.monitor.without_observer();
         searches[best].opposite_hand(&winner, is_confident, &MatchMonitor::from(&unobserved))?
     };
@@ -151,6 +151,6 @@ fn fit_kept(run: &Run) -> Option<PairFit> {
     let pairs = run
         .kept_pairs()
         .map(|pair| (&pair.moved, &pair.matched, pair.weight));
-    // The rigid fit gives the mirrored rmse in comparable form and tells the best scale as well.
+    // The rigid fit gives the mirrored rmse in comparable form, and the best scale as well.
     fit_pairs(pairs, Motion::Rigid).ok()
 }

@@ -17,7 +17,7 @@ use crate::search::FeatureGrid;
 /// Some iterations of the coarse stage at whose end only the better candidates go on.
 struct Round {
     n_iterations: usize,
-    /// Fraction of the coarse stage's points in use: far from the pose a few say as much as many,
+    /// Fraction of the coarse stage's points in use: far from the pose a few determine as much as many,
     /// and queries from far away are the expensive ones.
     points: f64,
     /// Fraction of the candidates that goes on.
@@ -77,7 +77,7 @@ const WITHIN_SIGHT: f64 = 1.5;
 /// away from the best pose it had.
 const SLIDES_OFF: f64 = 0.01;
 /// Nor, but for the best one, if its score fell by less than this share: it slides or turns as the surfaces leave it
-/// free to, and ten more steps tell as little.
+/// free to, and ten more steps change as little.
 const LITTLE_GAIN: f64 = 0.01;
 /// Iterations of a closer look at candidates that do not resemble the model.
 const LOOK_ITERATIONS: usize = 20;
@@ -155,7 +155,7 @@ pub(crate) fn resembles(choice: &DataChoice<'_>, candidates: &[Candidate]) -> bo
 /// How far candidates are refined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Depth {
-    /// On the few points of the coarse stage: where no candidate resembles the model this tells whether a right
+    /// On the few points of the coarse stage: where no candidate resembles the model this shows whether a right
     /// pose is among them that the coarse stage did not reach, and of different parts no more is worth knowing.
     Look,
     /// On more points, to the end.

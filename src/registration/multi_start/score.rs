@@ -19,9 +19,9 @@ const BEYOND: f64 = 3.0;
 /// Points of each mesh that poses are compared with.
 const N_POINTS: usize = 2000;
 /// Price of area beyond the other mesh's border, as an exponent of the covered fraction. Low, because
-/// such area says nothing against a pose, while area that has a counterpart and misses it does.
+/// such area is no evidence against a pose, while area that has a counterpart and misses it does.
 const OVERHANG_PRICE: f64 = 0.5;
-/// Where less than this fraction of the smaller part is covered, what is not covered says as much against
+/// Where less than this fraction of the smaller part is covered, what is not covered counts as much against
 /// a pose as what misses: a few points always fit.
 const SLIVER: f64 = 0.5;
 /// A point of the larger part is no counterpart of a place of the smaller one that has another at less than this share
@@ -53,7 +53,7 @@ pub(crate) struct PoseScorer<'a> {
     floor: f64,
     /// Points farther away than this find no partner.
     reach: f64,
-    /// The larger part, which tells whether a point without partner lies beyond its border. Without it
+    /// The larger part, which shows whether a point without partner lies beyond its border. Without it
     /// such points miss.
     far: Option<Arc<FeatureGrid>>,
     source_is_smaller: bool,
@@ -119,7 +119,7 @@ impl<'a> PoseScorer<'a> {
     }
 
     /// What holes without a counterpart add to the score of each mesh, at least 1. A mesh without
-    /// holes says nothing: they may not be modelled.
+    /// holes is no evidence: they may not be modelled.
     fn hole_prices(&self, target_from_source: &Similarity, back: &Similarity) -> [f64; 2] {
         let edge = edge_length(self.source, self.target);
         let (source, target) = (&self.source_holes, &self.target_holes);

@@ -1,4 +1,4 @@
-//! What the sizes of two surfaces say about how to search.
+//! How the sizes of two surfaces decide how to search.
 
 use super::candidate::Pairing;
 use crate::registration::result::Side;
@@ -10,9 +10,8 @@ const INCOMPATIBLE_RATIO: f64 = 0.01;
 /// Points that are enough there.
 const INCOMPATIBLE_POINTS: usize = 50;
 
-/// True if the sizes differ so much that the parts must be in different units or different parts.
-/// Points of the larger one would ask far away from the smaller one, which is slow and tells
-/// nothing.
+/// True if the sizes differ so much that the parts must be in different units or different parts. Points of the larger
+/// one would ask far away from the smaller one, which is slow and decides nothing.
 pub(super) fn sizes_incompatible(source: &Surface, target: &Surface) -> bool {
     let (a, b) = (source.measures().area, target.measures().area);
     a.min(b) <= INCOMPATIBLE_RATIO * a.max(b)

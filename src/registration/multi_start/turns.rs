@@ -1,5 +1,5 @@
 //! Poses of a part that looks the same after a share of a full turn, like a wheel: one small hole may be all that
-//! tells them apart, and of so many that score alike the usual starts keep any few.
+//! distinguishes them, and of so many that score alike the usual starts keep any few.
 
 use std::f64::consts::TAU;
 
@@ -29,7 +29,7 @@ const AS_CLOSE: f64 = 4.0;
 /// … and the distance of so many cells of the grid more.
 const CELLS: f64 = 0.5;
 /// Where more than this share of all angles is alike, the part is round: it is free to turn and its borders
-/// say where it belongs.
+/// determine where it belongs.
 const ROUND: f64 = 0.5;
 /// Turned poses that are tried at most.
 const MOST: usize = 16;

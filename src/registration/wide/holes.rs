@@ -1,5 +1,5 @@
 //! Poses from holes: two holes of the smaller part on two of the larger one that are as large and as far apart, or its
-//! only hole on each that is as large. Where a part can slide along its counterpart, holes say where it belongs.
+//! only hole on each that is as large. Where a part can slide along its counterpart, holes determine where it belongs.
 
 use std::f64::consts::TAU;
 
@@ -14,7 +14,7 @@ use crate::search::FeatureGrid;
 
 /// Holes of the smaller and of the larger part that poses are made of, the largest first …
 const MOST_HOLES: [usize; 2] = [24, 64];
-/// … and holes of a part that are counted: the only one that tells places of a regular pattern apart may be small.
+/// … and holes of a part that are counted: the only one that distinguishes places of a regular pattern may be small.
 const MOST_COUNTED: usize = 500;
 /// Holes are as large if their radii differ by at most this share of the larger one and so many mean edge lengths,
 /// which the corners of a coarse or ragged hole take from it.
@@ -39,7 +39,7 @@ const N_TURNS: usize = 36;
 const NEARLY_MOST: f64 = 0.85;
 /// Unless so many poses have more.
 const LEAST_FIRST: usize = 4;
-/// First poses at most: of a plate with hundreds of like holes they say nothing.
+/// First poses at most: of a plate with hundreds of like holes they determine nothing.
 const MOST_FIRST: usize = 10_000;
 
 /// A hole in grid units, of the data in the frame of its cloud.
@@ -92,7 +92,7 @@ impl Holes {
         let counts: Vec<usize> = counted.collect();
         let mut sorted = counts.clone();
         sorted.sort_unstable_by(|a, b| b.cmp(a));
-        // Surfaces do not tell the places of a regular pattern apart: those that most holes speak for come alone.
+        // Surfaces do not distinguish the places of a regular pattern: those that most holes support come alone.
         let of_these = sorted.get(LEAST_FIRST).or(sorted.last()).copied();
         let nearly = NEARLY_MOST * sorted.first().copied().unwrap_or(0) as f64;
         let least = of_these.unwrap_or(0).max(nearly.ceil() as usize);

@@ -22,7 +22,7 @@ type Lane = [f32; LANES];
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reach {
     pub(super) cut: f32,
-    /// Distance within the tangential plane that says nothing, because a cell stands for all
+    /// Distance within the tangential plane that is negligible, because a cell stands for all
     /// queries in it.
     pub(super) slack: f32,
 }

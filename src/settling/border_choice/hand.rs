@@ -1,4 +1,4 @@
-//! The left part told from the right one by borders and holes.
+//! The left part distinguished from the right one by borders and holes.
 
 use rayon::prelude::*;
 
@@ -12,16 +12,16 @@ use crate::settling::context::PairContext;
 use crate::settling::free_motion_search::poses_along;
 use crate::settling::refine_with_borders::Least;
 
-/// Shares of the borders that differ by less than this do not tell hands apart.
+/// Shares of the borders that differ by less than this do not distinguish hands.
 const SAME_SHARE: f64 = 0.02;
-/// Where less of the borders lies where it belongs than what surely tells hands apart, the score of the opposite hand
+/// Where less of the borders lies where it belongs than what surely distinguishes hands, the score of the opposite hand
 /// counts as at least this many times the result's.
 const HINT: f64 = 0.9;
 /// Scores of the opposite hand above this many times the result's need no other opinion.
 const OPPOSITE_IS_CLEAR: f64 = 1.3;
 
 /// Score of the opposite hand over that of the result, where the surfaces fit both: a hole on one side
-/// tells the left part from the right one. `None` where the surfaces decide, or the opposite hand found
+/// distinguishes the left part from the right one. `None` where the surfaces decide, or the opposite hand found
 /// no pose.
 pub fn hand_by_borders(
     context: &PairContext<'_>,
@@ -61,7 +61,7 @@ pub fn hand_by_borders(
     let fits_as_well = result.gap <= AS_CLOSE * opposite.gap;
     let behind = result.held - opposite.held;
     let ratio = ratio_by_borders(apart(behind, SAME_SHARE));
-    // Borders that fit neither hand are a hint and no more.
+    // Borders that fit neither hand well decide nothing by themselves.
     let least = if opposite.held < SURELY_HELD {
         HINT
     } else {

@@ -1,4 +1,4 @@
-//! Which of several poses borders and holes speak for.
+//! Which of several poses borders and holes support.
 
 use super::*;
 use crate::assess::AssessSettings;
