@@ -86,8 +86,8 @@ pub fn coverage(
     let back = target_from_source.inverse();
     let scale = target_from_source.scale;
     Ok(Coverage {
-        source_on_target: one_sided(source, target, target_from_source, limit, 1.0, monitor)?,
-        target_on_source: one_sided(target, source, &back, limit, scale, monitor)?,
+        source_on_target: one_sided([source, target], target_from_source, limit, 1.0, monitor)?,
+        target_on_source: one_sided([target, source], &back, limit, scale, monitor)?,
         limit,
     })
 }
@@ -130,8 +130,7 @@ const MOST_NODES: usize = 250_000;
 
 /// `unit` turns distances measured in the model's frame into target lengths.
 fn one_sided(
-    data: &Surface,
-    model: &Surface,
+    [data, model]: [&Surface; 2],
     model_from_data: &Similarity,
     limit: f64,
     unit: f64,

@@ -12,7 +12,13 @@ fn search(data: &TriMesh, model: &TriMesh, mirrored: bool) -> Vec<WideFind> {
     let surface = |mesh: &TriMesh| Surface::new(mesh, "source").unwrap();
     let (data, model) = (surface(data), surface(model));
     let search = WideSearch::new(&data, &model).unwrap();
-    search.run(mirrored, &Monitor::silent()).unwrap()
+    let silent = Monitor::silent();
+    let found = if mirrored {
+        search.run_mirrored(&silent)
+    } else {
+        search.run(&silent)
+    };
+    found.unwrap()
 }
 
 /// Searches `data`, moved away by a placement of its own for each seed, and expects it back.
@@ -199,10 +205,10 @@ fn a_cancel_ends_it_and_a_stop_keeps_what_was_reached() {
     let search = WideSearch::new(&part, &part).unwrap();
     let stopped = Monitor::silent();
     stopped.request_stop();
-    assert!(!search.run(false, &stopped).unwrap().is_empty());
+    assert!(!search.run(&stopped).unwrap().is_empty());
     let cancelled = Monitor::silent();
     cancelled.request_cancel();
-    assert_eq!(search.run(false, &cancelled), Err(Cancelled));
+    assert_eq!(search.run(&cancelled), Err(Cancelled));
 }
 
 /// How many iterations refined each start of a match.

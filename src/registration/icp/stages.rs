@@ -265,7 +265,11 @@ pub(crate) fn stage_rules(
             curved: on_triangles && !row.wide_pairs,
         },
         selection: SelectRules {
-            selection: widened(settings.selection, row.wide_selection.of(settings.metric)),
+            selection: if row.wide_selection.of(settings.metric) {
+                widened(settings.selection)
+            } else {
+                settings.selection
+            },
             floor: if row.wide_pairs && floor > 0.0 {
                 floor.max(WIDE_FLOOR * edge)
             } else {
@@ -298,17 +302,18 @@ pub(crate) fn stage_rules(
     }
 }
 
-fn widened(selection: Selection, wide: bool) -> Selection {
+/// The selection with a wide basin.
+fn widened(selection: Selection) -> Selection {
     match selection {
-        Selection::Fractional { lambda, floor } if wide => Selection::Fractional {
+        Selection::Fractional { lambda, floor } => Selection::Fractional {
             lambda: lambda.max(WIDE_LAMBDA),
             floor,
         },
-        Selection::TrimmedSearch if wide => Selection::Fractional {
+        Selection::TrimmedSearch => Selection::Fractional {
             lambda: WIDE_LAMBDA,
             floor: Floor::Auto,
         },
-        other => other,
+        Selection::All | Selection::Trimmed { .. } => selection,
     }
 }
 

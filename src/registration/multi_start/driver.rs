@@ -164,7 +164,7 @@ impl<'a> MultiStart<'a> {
         let poses_are_given = self.poses_are_given();
         let mut again = first.clone();
         if let Some(wide) = self.wide.as_ref().filter(|_| !poses_are_given) {
-            again = wide.find(false, monitor.monitor)?;
+            again = wide.find(monitor.monitor)?;
             first.extend(&again);
         }
         self.timings.align += begin.elapsed();
@@ -224,7 +224,7 @@ impl<'a> MultiStart<'a> {
             return Ok(());
         };
         let begin = Instant::now();
-        let found = wide.find(false, monitor.monitor)?;
+        let found = wide.find(monitor.monitor)?;
         self.timings.align += begin.elapsed();
         Ok(self.run_starts(0, &found, numbers, monitor)?)
     }
@@ -406,7 +406,7 @@ impl<'a> MultiStart<'a> {
         let (choice, candidates) = &self.choices[winner.choice];
         let mut starts = mirror_images(choice, &candidates[winner.candidate]);
         if let Some(wide) = self.wide.as_ref().filter(|_| !is_confident) {
-            let found = wide.find(true, monitor.monitor)?;
+            let found = wide.find_opposite(monitor.monitor)?;
             starts.extend(found.into_iter().take(N_OPPOSITE));
         }
         let candidate = |start: &Start| Candidate::new(choice, *start, 0);

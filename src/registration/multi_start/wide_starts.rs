@@ -80,7 +80,7 @@ impl<'a> WideStarts<'a> {
         let Some(grid) = self.larger().filter(|_| !self.search.is_whole()) else {
             return Ok(Vec::new());
         };
-        let found = WideSearch::on(model, model, grid).run(false, monitor)?;
+        let found = WideSearch::on(model, model, grid).run(monitor)?;
         let extent = model.measures().into();
         let is_other =
             |find: &&WideFind| !same_pose(&find.model_from_data, &Similarity::identity(), &extent);
@@ -101,10 +101,17 @@ impl<'a> WideStarts<'a> {
         Ok(starts.collect())
     }
 
-    /// The distinct survivors that are worth an exact look, best first; of the opposite hand if
-    /// `mirrored`.
-    pub(crate) fn find(&self, mirrored: bool, monitor: &Monitor) -> Result<Vec<Start>, Cancelled> {
-        let found = self.search.run(mirrored, monitor)?;
+    /// The distinct survivors that are worth an exact look, best first.
+    pub(crate) fn find(&self, monitor: &Monitor) -> Result<Vec<Start>, Cancelled> {
+        Ok(self.worth_a_look(&self.search.run(monitor)?))
+    }
+
+    /// Those of the opposite hand.
+    pub(crate) fn find_opposite(&self, monitor: &Monitor) -> Result<Vec<Start>, Cancelled> {
+        Ok(self.worth_a_look(&self.search.run_mirrored(monitor)?))
+    }
+
+    fn worth_a_look(&self, found: &[WideFind]) -> Vec<Start> {
         let best = found.first().map_or(0.0, |find| find.loss);
         let is_worth = |find: &&WideFind| find.loss <= WORTH_LOSS * best + WORTH_MORE;
         let starts = found.iter().take_while(is_worth).map(|find| Start {
@@ -112,6 +119,6 @@ impl<'a> WideStarts<'a> {
             flipped: find.flipped,
             target_from_source: self.data_side.oriented(&find.model_from_data),
         });
-        Ok(starts.collect())
+        starts.collect()
     }
 }

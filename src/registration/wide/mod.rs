@@ -189,16 +189,18 @@ impl<'a> WideSearch<'a> {
         }
     }
 
-    /// The distinct poses that survive, best first; those of the opposite hand if `mirrored`. After
-    /// a stop request what has been reached. The same for any number of threads.
-    pub fn run(&self, mirrored: bool, monitor: &Monitor) -> Result<Vec<WideFind>, Cancelled> {
-        let turned;
-        let cloud = if mirrored {
-            turned = self.cloud.mirrored();
-            &turned
-        } else {
-            &self.cloud
-        };
+    /// The distinct poses that survive, best first. After a stop request what has been reached. The same for any
+    /// number of threads.
+    pub fn run(&self, monitor: &Monitor) -> Result<Vec<WideFind>, Cancelled> {
+        self.run_with(&self.cloud, monitor)
+    }
+
+    /// The same for the opposite hand of the data.
+    pub fn run_mirrored(&self, monitor: &Monitor) -> Result<Vec<WideFind>, Cancelled> {
+        self.run_with(&self.cloud.mirrored(), monitor)
+    }
+
+    fn run_with(&self, cloud: &Cloud, monitor: &Monitor) -> Result<Vec<WideFind>, Cancelled> {
         let counts = self.counts();
         let mut seeds = seeds::seeds(cloud, (self.data, self.model), &self.grid, counts);
         let ground = self.ground(cloud);

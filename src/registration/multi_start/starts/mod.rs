@@ -68,6 +68,15 @@ impl StartSettings {
         }
         Ok((360.0 / degrees - 1e-9).ceil() as usize)
     }
+
+    /// Whether the source's normals count reversed, in each of the directions that are tried.
+    fn signs(&self) -> &'static [bool] {
+        if self.both_signs {
+            BOTH_SIGNS
+        } else {
+            &[false]
+        }
+    }
 }
 
 /// How a start came to be.
@@ -139,6 +148,8 @@ pub struct Start {
     pub target_from_source: Similarity,
 }
 
+/// The source's normals as they are, and reversed.
+const BOTH_SIGNS: &[bool] = &[false, true];
 /// Number of rotations in the covering: 60 lie within 45° of every rotation.
 const N_COVERING: usize = 60;
 
@@ -153,26 +164,26 @@ pub(crate) fn starts(
     let all = settings.method == StartMethod::All;
     if all || settings.method == StartMethod::CurrentPose {
         let here = [(StartKind::CurrentPose, Similarity::identity())];
-        found.extend(with_signs(here, settings.both_signs));
+        found.extend(with_signs(here, settings.signs()));
     }
     if all || settings.method == StartMethod::GivenPoses {
         let given = settings.poses.iter().enumerate();
         let given = given.map(|(index, pose)| (StartKind::Given { index }, *pose));
-        found.extend(with_signs(given, settings.both_signs));
+        found.extend(with_signs(given, settings.signs()));
     }
     if all || settings.method == StartMethod::SurfaceNormals {
         found.extend(surface_normals::starts(
             source,
             target,
             n_rotations,
-            settings.both_signs,
+            settings.signs(),
         ));
     }
     if all {
-        found.extend(with_signs(frames::poses(source, target), true));
+        found.extend(with_signs(frames::poses(source, target), BOTH_SIGNS));
         found.extend(with_signs(
             covering::poses(source, target, N_COVERING),
-            true,
+            BOTH_SIGNS,
         ));
     }
     if found.is_empty() {
@@ -181,8 +192,10 @@ pub(crate) fn starts(
     Ok(found)
 }
 
-fn with_signs(poses: impl IntoIterator<Item = (StartKind, Similarity)>, both: bool) -> Vec<Start> {
-    let signs = if both { &[false, true][..] } else { &[false] };
+fn with_signs(
+    poses: impl IntoIterator<Item = (StartKind, Similarity)>,
+    signs: &[bool],
+) -> Vec<Start> {
     poses
         .into_iter()
         .flat_map(|(kind, target_from_source)| {

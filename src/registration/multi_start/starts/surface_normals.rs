@@ -74,13 +74,10 @@ pub(super) fn starts(
     source: &Surface,
     target: &Surface,
     n_rotations: usize,
-    both_signs: bool,
+    signs: &[bool],
 ) -> Vec<Start> {
     let mut found = Vec::new();
-    for flipped in [false, true] {
-        if flipped && !both_signs {
-            continue;
-        }
+    for &flipped in signs {
         for k in 0..n_rotations {
             let angle_deg = 360.0 * k as f64 / n_rotations as f64;
             found.push(Start {
