@@ -3,7 +3,7 @@
 
 use super::border_curve::{BorderCurve, Place, along, curves_of, ragged};
 use super::least_squares::{quantile, robust_weights};
-use super::tolerance::{ShapeTolerance, is_source_smaller};
+use super::tolerance::{ShapeTolerance, coarser_edge, is_source_smaller};
 use crate::geometry::{Point3, Similarity, Vector3};
 use crate::registration::Surface;
 use crate::search::{ClosestPoint, PointTree};
@@ -91,6 +91,14 @@ pub(crate) struct HolePair {
     pub(super) wider: f64,
 }
 
+impl Hole {
+    /// What of a shift lies within the sheet: across it the middle of a hole moves with the surface, which is compared
+    /// by itself.
+    pub(super) fn within_sheet(&self, shift: &Vector3) -> Vector3 {
+        shift - self.normal * shift.dot(&self.normal)
+    }
+}
+
 impl HolePair {
     fn of(of_source: &Hole, of_target: &Hole) -> Self {
         Self {
@@ -156,11 +164,10 @@ impl<'a> BorderComparison<'a> {
         let [source, target] = surfaces;
         let borders = surfaces.map(curves_of);
         let of_source = is_source_smaller(source, target, scale);
-        let edge = source.measures().mean_edge_length * scale;
         let [own, other] = if of_source { [0, 1] } else { [1, 0] };
         let units = [scale, 1.0];
         let still = Borders {
-            edge: edge.max(target.measures().mean_edge_length),
+            edge: coarser_edge(surfaces, scale),
             ragged: ragged(&borders[0], scale).max(ragged(&borders[1], 1.0)),
             length: units[own] * borders[own].iter().map(|border| border.length).sum::<f64>(),
             ..Borders::default()

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::tolerance::{coarser_edge, faceting};
 use crate::geometry::Similarity;
 use crate::geometry::serial::any_float;
 use crate::monitor::{Cancelled, Monitor};
@@ -68,10 +69,9 @@ const LIMIT_FACETING: f64 = 3.0;
 /// Distance up to which a place counts as covered: half the mean edge length of the coarser mesh, at least three times
 /// the faceting. Target length units, for poses of this scale.
 pub fn overlap_limit(source: &Surface, target: &Surface, scale: f64, allowance: f64) -> f64 {
-    let (a, b) = (source.measures(), target.measures());
-    let edge = (scale * a.mean_edge_length).max(b.mean_edge_length);
-    let chordal = (scale * a.chordal_error).max(b.chordal_error);
-    (LIMIT_EDGES * edge).max(LIMIT_FACETING * chordal) + allowance
+    let pair = [source, target];
+    let [edge, facets] = [coarser_edge(pair, scale), faceting(pair, scale)];
+    (LIMIT_EDGES * edge).max(LIMIT_FACETING * facets) + allowance
 }
 
 /// Measures the nodes of both meshes under a pose: all of them up to 250,000, an even choice of a larger

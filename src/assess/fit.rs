@@ -169,9 +169,8 @@ impl Fit {
             let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
             let explained = axes.map(|axis| row(&pair.hole.center, &axis, 0.0).dot(&found));
             let left = pair.off - Vector3::from(explained);
-            // Across its sheet the middle of a hole moves with the surface, which is compared already.
             HoleLeft {
-                off: left - pair.hole.normal * left.dot(&pair.hole.normal),
+                off: pair.hole.within_sheet(&left),
                 wider: pair.wider,
             }
         });

@@ -235,9 +235,8 @@ impl Frame {
             let HolePair { hole, off, .. } = pair;
             let row = |axis: Vector3| self.placed(&evidence.contacts, &hole.center, &axis);
             let moved = Vector3::from(axes.map(|axis| row(axis).dot(found)));
-            let within = |off: Vector3| (off - hole.normal * off.dot(&hole.normal)).norm();
-            let after = within(off - moved);
-            after > limit && after > within(*off)
+            let after = hole.within_sheet(&(off - moved)).norm();
+            after > limit && after > hole.within_sheet(off).norm()
         })
     }
 

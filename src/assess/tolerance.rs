@@ -160,8 +160,7 @@ impl Distances {
         let tolerance = tolerance_of(target, settings);
         let diagonal = target.measures().diagonal;
         let reach = (REACH * diagonal).max(SPRINGBACK_REACH * tolerance.springback);
-        let chordal = |surface: &Surface| surface.measures().chordal_error;
-        let facets = (scale * chordal(source)).max(chordal(target));
+        let facets = faceting([source, target], scale);
         Self {
             tolerance,
             reach,
@@ -189,6 +188,18 @@ impl Distances {
     pub(crate) fn as_close_as(&self, share: f64, gap: f64) -> f64 {
         AS_CLOSE * gap + self.little_more(share, gap)
     }
+}
+
+/// How far the facets of both meshes lie off the sheets, under poses of this scale.
+pub(super) fn faceting(pair: [&Surface; 2], scale: f64) -> f64 {
+    let [source, target] = pair.map(|surface| surface.measures().chordal_error);
+    (scale * source).max(target)
+}
+
+/// Mean edge length of the coarser mesh, under poses of this scale.
+pub(super) fn coarser_edge(pair: [&Surface; 2], scale: f64) -> f64 {
+    let [source, target] = pair.map(|surface| surface.measures().mean_edge_length);
+    (scale * source).max(target)
 }
 
 /// Whether the source is the smaller part, by area, under a pose of this scale: the smaller part's nodes and

@@ -15,6 +15,7 @@ pub use spots::{Spot, worst_spots};
 pub use stats::{DeviationStats, Histogram};
 
 use super::overlap_limit;
+use super::tolerance::faceting;
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::Surface;
@@ -92,8 +93,7 @@ pub fn compare(
     let pose = target_from_source;
     let forth = source_on_target(source, target, pose, settings, monitor)?;
     let back = target_on_source(source, target, pose, settings, monitor)?;
-    let chordal = |surface: &Surface| surface.measures().chordal_error;
-    let noise = chordal(target).max(chordal(source) * pose.scale);
+    let noise = faceting([source, target], pose.scale);
     let finish = |field: DeviationField, surface: &Surface, scale: f64| {
         let separation = SPOT_EDGES * surface.measures().mean_edge_length;
         let spots = worst_spots(&field, surface, scale, separation * scale, N_SPOTS);
