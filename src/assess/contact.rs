@@ -26,6 +26,8 @@ const MIN_FACING: f64 = 0.64;
 /// A point lies beside the place closest to it, and not above, if the way there leads off the normal by more than this:
 /// sine of 30°.
 const BESIDE: f64 = 0.5;
+/// A place beside a border by less than this share of the mean edge length lies on it.
+const ON_THE_BORDER: f64 = 0.02;
 
 /// A place of the smaller part beside the other part, in the target's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -377,10 +379,12 @@ impl Contacts {
     }
 }
 
-/// Whether a point lies rather beside the place of a surface closest to it than above.
+/// Whether a point lies rather beside the place of a surface closest to it than above. One that is beside it by
+/// [`ON_THE_BORDER`] at most lies on it: the direction of a distance that small is that of rounding.
 fn is_beside(model: &Surface, hit: &SurfaceHit, point: &Point3) -> bool {
     let (away, normal) = (point - hit.point, model.normal_at(hit));
-    (away - normal * away.dot(&normal)).norm() > BESIDE * away.norm()
+    let beside = (away - normal * away.dot(&normal)).norm();
+    beside > BESIDE * away.norm() && beside > ON_THE_BORDER * model.measures().mean_edge_length
 }
 
 /// How far a facet may lie off the smooth surface it stands for, whose normal here is `normal`: the

@@ -122,6 +122,31 @@ fn a_right_pose_is_good_and_covers_everything() {
 }
 
 #[test]
+fn a_strip_one_element_wide_meets_itself_as_a_whole() {
+    // All of its nodes lie on the border, at a distance of rounding or of noise in any direction.
+    let strip = |noise: f64| {
+        let place = |i: u32, x: f64| {
+            let (y, jitter) = (f64::from(i), f64::from(i * 7 % 11) - 5.0);
+            let wave = 0.3 * y * y + x * 0.1 * y.sin();
+            Point3::new(x + noise * jitter, 12.0 * y, wave - noise * jitter)
+        };
+        let positions = (0..9).flat_map(|i| [place(i, 0.0), place(i, 20.0)]);
+        let triangles = (0..8).flat_map(|i| {
+            let a = 2 * i;
+            [[a, a + 1, a + 3], [a, a + 3, a + 2]]
+        });
+        TriMesh::new(positions.collect(), triangles.collect()).unwrap()
+    };
+    for noise in [0.0, 1e-4] {
+        let source = strip(noise).transformed(&placement(5));
+        let (_, assessed) = judge(&source, &strip(0.0));
+        let met = assessed.shape.as_ref().unwrap().met;
+        assert!((met - 1.0).abs() < 1e-9, "{noise}: {met}");
+        assert_ne!(assessed.verdict, Verdict::Poor, "{noise}");
+    }
+}
+
+#[test]
 fn the_opposite_hand_needs_more_than_a_lower_score() {
     let source = pan(6.0, 0.0, everywhere).transformed(&placement(3));
     let target = pan(9.0, 0.35, everywhere);
