@@ -34,8 +34,13 @@ struct Apart<'a> {
 }
 
 impl Apart<'_> {
+    /// Whether a point lies beside it within the sheet: a node of the other part there lies off it by the gap.
     fn is_beside(&self, at: &Point3) -> bool {
-        (at - self.contact.point).norm_squared() <= (BESIDE * self.size).powi(2)
+        let away = at - self.contact.point;
+        let height = away.dot(&self.contact.normal);
+        let near = BESIDE * self.size;
+        height.abs() <= self.contact.gap.abs() + near
+            && away.norm_squared() - height * height <= near * near
     }
 }
 
@@ -154,7 +159,8 @@ impl<'a, 'b> Group<'a, 'b> {
             Point3::from([f64::NEG_INFINITY; 3]),
         );
         for place in &places {
-            let (at, near) = (place.contact.point, Vector3::repeat(BESIDE * place.size));
+            let at = place.contact.point;
+            let near = Vector3::repeat(place.contact.gap.abs() + BESIDE * place.size);
             low = low.inf(&(at - near));
             high = high.sup(&(at + near));
         }

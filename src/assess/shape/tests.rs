@@ -199,6 +199,29 @@ fn a_bead_narrower_than_the_elements_can_show_is_told_where_both_meshes_say_so()
 }
 
 #[test]
+fn a_narrow_bead_is_found_however_deep_it_is() {
+    // A bracket of 120 by 60 mm with a bead 16 mm wide.
+    let bracket = |n: usize, depth: f64| {
+        grid([2 * n, n], move |i, j| {
+            let [x, y] = [i, j].map(|k| 60.0 * k as f64 / n as f64 - 30.0);
+            let across = ((y - 2.0) / 8.0).abs().min(1.0);
+            let end = ((30.0 - (x - 30.0).abs()) / 5.0).clamp(0.0, 1.0);
+            let bead = depth / 2.0 * (1.0 + (PI * across).cos()) * end;
+            Point3::new(x, y, 5.0 * (x / 20.0).sin() + 3.0 * (y / 12.0).cos() + bead)
+        })
+    };
+    let plain = bracket(45, 0.0);
+    // The nodes of the deep ones lie farther from the plain sheet than from each other.
+    for depth in [3.0, 5.0, 7.0] {
+        let shape = statement(&plain, &bracket(15, depth));
+        assert!(
+            matches!(shape.reasons[..], [ShapeReason::Local { .. }]),
+            "{depth}: {shape:?}"
+        );
+    }
+}
+
+#[test]
 fn beads_that_run_out_at_an_outline_and_bent_flanges_are_told() {
     let height =
         |x: f64, y: f64| 30.0 * (x / 160.0 + 0.4).sin() + 15.0 * ((x + 2.0 * y) / 130.0).cos();
