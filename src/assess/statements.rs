@@ -117,19 +117,16 @@ impl<'a> Compared<'a> {
 
 impl<'a> Met<'a> {
     fn of(mut evidence: PoseEvidence<'a>, tolerance: &ShapeTolerance, outlines: Outlines) -> Self {
-        let mut other_trim = None;
-        match outlines {
-            Outlines::LeftOut => evidence.borders = evidence.borders.of_holes(),
-            Outlines::Compared => {
-                if let Some(trim) = trims::other_trim(&evidence, tolerance) {
-                    evidence.borders = trim.left;
-                    other_trim = Some(trim.apart);
-                }
+        let (fit, other_trim) = match outlines {
+            Outlines::LeftOut => {
+                evidence.borders = evidence.borders.of_holes();
+                (Fit::of(&evidence), None)
             }
-        }
+            Outlines::Compared => trims::fit_of_shape(&mut evidence, tolerance),
+        };
         Self {
-            fit: Fit::of(&evidence),
             evidence,
+            fit,
             other_trim,
         }
     }

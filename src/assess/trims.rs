@@ -52,17 +52,27 @@ pub(crate) fn other_trim(
     tolerance: &ShapeTolerance,
 ) -> Option<OtherTrim> {
     let limit = evidence.borders.limit(tolerance);
-    let outlines = SplitOutlines::of(evidence, limit)?;
-    if outlines.share_apart() <= 1.0 - STATED
-        || stretch::explains_outlines(evidence, limit)
-        || outline_aside_of_holes(&evidence.borders, &outlines.fit, limit).is_some()
-    {
-        return None;
+    SplitOutlines::of(evidence, limit)?.other_trim(evidence, limit)
+}
+
+/// The fit of evidence whose outlines count unless the parts were trimmed differently, and how far these lie apart
+/// then. Such outlines are taken out of the evidence. Where they are a difference of the shape, but push aside
+/// what surfaces and holes agree on, they are only measured.
+pub(super) fn fit_of_shape(
+    evidence: &mut PoseEvidence<'_>,
+    tolerance: &ShapeTolerance,
+) -> (Fit, Option<f64>) {
+    let limit = evidence.borders.limit(tolerance);
+    let Some(outlines) = SplitOutlines::of(evidence, limit) else {
+        return (Fit::of(evidence), None);
+    };
+    match outlines.other_trim(evidence, limit) {
+        Some(trim) => {
+            evidence.borders = trim.left;
+            (Fit::of(evidence), Some(trim.apart))
+        }
+        None => (outlines.fit, None),
     }
-    Some(OtherTrim {
-        apart: outlines.distance(),
-        left: outlines.trusted(),
-    })
 }
 
 /// The fit of the evidence. Borders that do not determine where the part belongs are taken out of it; `limit` is how
@@ -142,6 +152,20 @@ impl<'a> SplitOutlines<'a> {
         by_holes.holes.len() >= HOLES_THAT_HOLD
             && by_holes.worst_hole() <= limit.min(self.fit.worst_hole())
             && remains(by_holes) <= remains(&self.fit) + UNREMARKABLE * limit
+    }
+
+    /// The borders without these outlines, where they lie apart because of a trim.
+    fn other_trim(&self, evidence: &PoseEvidence<'_>, limit: f64) -> Option<OtherTrim> {
+        if self.share_apart() <= 1.0 - STATED
+            || stretch::explains_outlines(evidence, limit)
+            || outline_aside_of_holes(self.borders, &self.fit, limit).is_some()
+        {
+            return None;
+        }
+        Some(OtherTrim {
+            apart: self.distance(),
+            left: self.trusted(),
+        })
     }
 
     /// Share of the outlines that lies apart.

@@ -515,6 +515,37 @@ fn an_outline_that_lies_aside_of_the_holes_is_told() {
 }
 
 #[test]
+fn an_outline_aside_of_the_holes_does_not_move_them() {
+    // An arch of 600 by 200 mm with three holes; both of its sides lie aside by as much.
+    let arch = |by: f64| {
+        let whole = grid([60, 20], |i, j| {
+            let aside = if j % 20 == 0 { by } else { 0.0 };
+            let [x, y] = [i, j].map(|k| 10.0 * k as f64);
+            Point3::new(x, y + aside, 40.0 * ((x - 300.0) / 300.0).powi(2))
+        });
+        let mesh = whole.mesh();
+        let is_in_hole = |corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(|v| mesh.positions()[v as usize]);
+            let middle = (a.coords + b.coords + c.coords) / 3.0;
+            let holes = [[100.0, 50.0], [300.0, 120.0], [440.0, 60.0]];
+            let is_within = |at: f64, low: f64| (low..low + 40.0).contains(&at);
+            holes
+                .iter()
+                .any(|[x, y]| is_within(middle.x, *x) && is_within(middle.y, *y))
+        };
+        let solid = mesh.triangles().iter().filter(|of| !is_in_hole(of));
+        let pierced = TriMesh::new(mesh.positions().to_vec(), solid.copied().collect());
+        Surface::new(&pierced.unwrap(), "source").unwrap()
+    };
+    let shape = statement(&arch(6.0), &arch(0.0));
+    assert!(
+        matches!(shape.reasons[..], [ShapeReason::Borders { .. }]),
+        "{shape:?}"
+    );
+    assert!(shape.borders.worst_hole < 0.1, "{shape:?}");
+}
+
+#[test]
 fn the_camber_of_a_slender_part_is_springback() {
     // Deflection within the plane, under which sections stay plane.
     let cambered = |p: Point3| {
