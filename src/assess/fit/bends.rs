@@ -13,6 +13,11 @@ pub(in crate::assess) const N_BENDS: usize = 9;
 /// A part is slender if it is so many times as long as wide. Only such a part bends within its plane: the strain of
 /// its sides grows with its width, that of a wide part would be plastic.
 const SLENDER: f64 = 3.0;
+/// Normals of a sheet that faces no way cancel each other: a part faces an axis whose share of the mean normal is at
+/// least this …
+const LEAST_FACING: f64 = 0.3;
+/// … and so many times that of its shortest one.
+const MORE_FACING: f64 = 2.0;
 
 /// Deflections w(x, y) out of the part's plane of second and third order, with the displacements in the
 /// plane that keep lengths (Kirchhoff's plate), and for a slender part deflections v(x) within the plane, under which
@@ -28,7 +33,7 @@ pub(in crate::assess) struct Bends {
 impl Bends {
     /// Bends of the source under a pose, over the places where it meets the target.
     pub(in crate::assess) fn of(source: &Surface, pose: &Similarity, contacts: &Contacts) -> Self {
-        let axes = pose.rotation * source.measures().principal_axes;
+        let axes = pose.rotation * axes_of_plate(source);
         let center = contacts.center;
         let mut half = [f64::MIN_POSITIVE; 3];
         for contact in &contacts.list {
@@ -102,9 +107,30 @@ impl Bends {
     }
 }
 
+/// The axes of a part as a plate, the one across it last: the principal axis that most of the sheet faces, which
+/// is the shortest one of any but a deep part. A slender part bends both ways. Right-handed, as the principal axes are.
+fn axes_of_plate(source: &Surface) -> Matrix3 {
+    let measures = source.measures();
+    let (axes, spread) = (measures.principal_axes, measures.principal_spread);
+    if spread[0] >= SLENDER * spread[1] {
+        return axes;
+    }
+    let faces = |k: usize| axes.column(k).dot(&measures.mean_normal).abs();
+    let is_across = |k: usize| faces(k) >= LEAST_FACING && faces(k) > MORE_FACING * faces(2);
+    let [first, second, third] = [0, 1, 2].map(|k| axes.column(k).into_owned());
+    if is_across(1) {
+        Matrix3::from_columns(&[first, -third, second])
+    } else if is_across(0) {
+        Matrix3::from_columns(&[second, third, first])
+    } else {
+        axes
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::TriMesh;
 
     #[test]
     fn only_a_slender_part_bends_within_its_plane() {
@@ -119,5 +145,27 @@ mod tests {
         };
         assert_eq!(within_plane(100.0), [1.0, 1.0]);
         assert_eq!(within_plane(200.0), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_deep_arch_bends_across_the_way_it_faces() {
+        // Half an ellipse of 200 mm width, 100 or 260 mm high, along x.
+        let arch = |length: f64, height: f64| {
+            let points = (0..=20).flat_map(|i| (0..=40).map(move |j| (f64::from(i), f64::from(j))));
+            let points = points.map(|(i, j)| {
+                let angle = std::f64::consts::PI * j / 40.0;
+                let (x, y) = (length * i / 20.0, 100.0 * angle.cos());
+                Point3::new(x, y, height * angle.sin())
+            });
+            let cells = (0..20).flat_map(|i| (0..40).map(move |j| 41 * i + j));
+            let triangles = cells.flat_map(|a| [[a, a + 41, a + 42], [a, a + 42, a + 1]]);
+            let mesh = TriMesh::new(points.collect(), triangles.collect()).unwrap();
+            axes_of_plate(&Surface::new(&mesh, "source").unwrap())
+        };
+        for (length, height) in [(300.0, 100.0), (300.0, 260.0), (120.0, 260.0)] {
+            let axes = arch(length, height);
+            assert!(axes[(2, 2)].abs() > 0.99, "{length}, {height}: {axes}");
+            assert!((axes.determinant() - 1.0).abs() < 1e-9);
+        }
     }
 }
