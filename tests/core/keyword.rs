@@ -716,3 +716,32 @@ fn the_mark_that_ends_files_of_dos_is_no_card() {
         assert_eq!(model.shells.len(), 1, "{end:?}");
     }
 }
+
+#[test]
+fn materials_of_an_include_are_in_the_units_of_the_deck_around_it() {
+    // Steel in kg-mm-ms with a comment that says so, in kg-m-s, and in ton-mm-s.
+    let files = [
+        ("7.85E-6,210.", "1e-3,1e-3,1."),
+        ("7850.,2.1E11", "1e-3,1.,1e3"),
+        ("7.85E-9,2.1E5", ""),
+    ];
+    for (steel, factors) in files {
+        let part =
+            format!("$ units: kg, mm, ms\n*MAT_024\n5,{steel},0.3\n*MAT_RIGID\n6,{steel},0.3\n");
+        let part = if factors.is_empty() {
+            part.replace("units", "")
+        } else {
+            part
+        };
+        let main = format!("*KEYWORD\n*INCLUDE_TRANSFORM\npart.k\n0,0,0,10\n\n{factors}\n\n*END\n");
+        let files = Memory::new().with("main.k", main).with("part.k", part);
+        let model = read_files(&files);
+        let known = model.stated_units.map(|known| known.words());
+        let from_steel = "ton-mm-s, from density and modulus";
+        assert_eq!(known.as_deref(), Some(from_steel), "{factors}");
+        let found = model.materials.iter();
+        let found = found.map(|material| (material.id, &*material.law, material.modulus.round()));
+        let expected = [(15, "24", 2.1e5), (16, "20", 2.1e5)];
+        assert_eq!(found.collect::<Vec<_>>(), expected, "{factors}");
+    }
+}

@@ -84,7 +84,7 @@ impl Reader<'_> {
             included_as: context.included_as(),
         });
         let mut context = context;
-        if context.length == 1.0 {
+        if context.keeps_units() {
             self.assembly.unit_clues.read_head(file);
         }
         self.n_bytes += file.bytes().len() as u64;
@@ -302,12 +302,11 @@ impl Reader<'_> {
             let units = context.results();
             let (into, found) = (&mut assembly.forming, &mut assembly.found);
             found.beside_geometry(|found| read_block(file, block, units, into, found));
-        } else if context.length == 1.0 {
-            assembly.unit_clues.read_block(block);
-            if name.starts_with("MAT_") {
-                let material = read_material(block, context.offsets.material);
-                assembly.materials.extend(material);
-            }
+        } else if name.starts_with("MAT_") {
+            assembly.unit_clues.read_material(block, context);
+            assembly.materials.extend(read_material(block, context));
+        } else if name == "CONTROL_UNITS" && context.keeps_units() {
+            assembly.unit_clues.read_control(block);
         }
     }
 

@@ -56,6 +56,8 @@ pub(crate) struct Context {
     pub length: f64,
     /// Factor on stresses.
     pub stress: f64,
+    /// Factor on densities.
+    pub density: f64,
 }
 
 impl Default for Context {
@@ -66,11 +68,17 @@ impl Default for Context {
             offsets: Offsets::default(),
             length: 1.0,
             stress: 1.0,
+            density: 1.0,
         }
     }
 }
 
 impl Context {
+    /// True if nothing is converted, so that what the file says of its units is true of the whole deck.
+    pub(crate) fn keeps_units(&self) -> bool {
+        [self.length, self.stress, self.density] == [1.0; 3]
+    }
+
     pub(crate) fn results(&self) -> ResultUnits {
         ResultUnits {
             element: self.offsets.element,
@@ -131,6 +139,7 @@ impl Context {
             offsets: self.offsets.plus(include.offsets),
             length: self.length * include.length,
             stress: self.stress * include.stress,
+            density: self.density * include.density,
         }
     }
 }
@@ -147,6 +156,8 @@ pub(crate) struct Include {
     pub length: f64,
     /// FCTMAS / (FCTLEN · FCTTIM²): factor on stresses.
     pub stress: f64,
+    /// FCTMAS / FCTLEN³: factor on densities.
+    pub density: f64,
     /// TRANID with the including file's offset, or 0.
     pub transformation: u64,
 }
@@ -159,6 +170,7 @@ impl Include {
             offsets: Offsets::default(),
             length: 1.0,
             stress: 1.0,
+            density: 1.0,
             transformation: 0,
         }
     }
@@ -244,6 +256,7 @@ pub(crate) fn read_include_transform(
         });
         include.length = length;
         include.stress = mass / (length * time * time);
+        include.density = mass / length.powi(3);
     }
     if let Some(card) = cards.next() {
         match card.id(EIGHT_BY_10, 0) {

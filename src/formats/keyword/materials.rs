@@ -3,6 +3,7 @@
 use super::super::model::Material;
 use super::block::Block;
 use super::card::EIGHT_BY_10;
+use super::include::Context;
 use super::nodes::shifted;
 
 /// Laws of sheet metal with their numbers, which may stand in place of the name.
@@ -42,8 +43,8 @@ const NUMBERS: &[(&str, u32)] = &[
 const OPTIONS: &[&str] = &["_TITLE", "_LOG_INTERPOLATION", "_STOCHASTIC", "_MIDFAIL"];
 
 /// Reads the first card of a `*MAT_…` block; `None` for keywords that are no material of their own
-/// and for a card without an id.
-pub(crate) fn read_material(block: &Block<'_>, offset: i64) -> Option<Material> {
+/// and for a card without an id. The modulus is in the units of the deck that includes the file.
+pub(crate) fn read_material(block: &Block<'_>, context: &Context) -> Option<Material> {
     let law = law_of(&block.name)?;
     let mut cards = block.cards();
     if block.has_option("TITLE") {
@@ -52,9 +53,12 @@ pub(crate) fn read_material(block: &Block<'_>, offset: i64) -> Option<Material> 
     let card = cards.next()?;
     let modulus = card.real(EIGHT_BY_10, 2).ok().flatten().unwrap_or(0.0);
     Some(Material {
-        id: shifted(card.required_id(EIGHT_BY_10, 0).ok()?, offset),
+        id: shifted(
+            card.required_id(EIGHT_BY_10, 0).ok()?,
+            context.offsets.material,
+        ),
         law,
-        modulus,
+        modulus: modulus * context.stress,
     })
 }
 

@@ -4,6 +4,7 @@
 use super::super::text;
 use super::block::{Block, next_line};
 use super::card::EIGHT_BY_10;
+use super::include::Context;
 use super::source_file::SourceFile;
 use crate::units::{self, KnownUnits};
 
@@ -39,21 +40,26 @@ impl UnitClues {
         self.stated = self.stated.or_else(|| units::of_text(text));
     }
 
-    /// Reads a `*CONTROL_UNITS` or a `*MAT_…` block; passes over all others.
-    pub(super) fn read_block(&mut self, block: &Block<'_>) {
-        let mut cards = block.cards();
-        if block.name == "CONTROL_UNITS" {
-            let card = cards.next().map(|card| card.line_text());
-            self.read_text(&format!("units {}", card.unwrap_or_default()));
-        } else if block.name.starts_with("MAT_") && !block.name.starts_with("MAT_ADD") {
-            if block.has_option("TITLE") {
-                cards.next();
-            }
-            let Some(card) = cards.next() else { return };
-            let field = |index| card.real(EIGHT_BY_10, index).ok().flatten();
-            self.materials
-                .extend(field(1).zip(field(2)).map(<[f64; 2]>::from));
+    /// Reads a `*CONTROL_UNITS` block.
+    pub(super) fn read_control(&mut self, block: &Block<'_>) {
+        let card = block.cards().next().map(|card| card.line_text());
+        self.read_text(&format!("units {}", card.unwrap_or_default()));
+    }
+
+    /// Reads a `*MAT_…` block, whose numbers the include that it stands in may convert.
+    pub(super) fn read_material(&mut self, block: &Block<'_>, context: &Context) {
+        if block.name.starts_with("MAT_ADD") {
+            return;
         }
+        let mut cards = block.cards();
+        if block.has_option("TITLE") {
+            cards.next();
+        }
+        let Some(card) = cards.next() else { return };
+        let field = |index| card.real(EIGHT_BY_10, index).ok().flatten();
+        let found = field(1).zip(field(2));
+        let converted = found.map(|(density, e)| [density * context.density, e * context.stress]);
+        self.materials.extend(converted);
     }
 
     /// What all of it comes to.
