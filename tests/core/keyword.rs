@@ -701,6 +701,43 @@ fn a_negative_part_set_ends_a_range_of_sets() {
 }
 
 #[test]
+fn an_intersection_has_the_members_of_the_first_set_that_are_in_all() {
+    for (kind, key) in [("SHELL", "shell"), ("NODE", "node"), ("PART", "part")] {
+        let lists = format!(
+            "*SET_{kind}_LIST\n5\n4,3,2,1\n*SET_{kind}_LIST\n6\n1,2,4,9\n*SET_{kind}_LIST\n9\n7,4,1\n"
+        );
+        let read = |option: &str, card: &str| {
+            let model = read_text(format!(
+                "{lists}*SET_{kind}_{option}_TITLE\nname\n7\n{card}\n"
+            ));
+            let sets = match key {
+                "shell" => &model.sets.shells,
+                "node" => &model.sets.nodes,
+                _ => &model.sets.parts,
+            };
+            let told = model.diagnostics.iter().map(ToString::to_string);
+            let told = told.filter(|told| told.contains("set"));
+            (sets[&7].ids.clone(), told.collect::<Vec<_>>())
+        };
+        assert_eq!(read("INTERSECT", "5,6,9"), (vec![4, 1], vec![]));
+        assert_eq!(
+            read("INTERSECT", "0,0,0,0,0,0,0,5\n6"),
+            (vec![4, 2, 1], vec![])
+        );
+        let (ids, told) = read("INTERSECT", "5,8");
+        assert_eq!((ids, told.len()), (vec![], 1));
+        assert!(told[0].contains("names") && told[0].contains("set 8, which is not defined"));
+        let (ids, told) = read("TREE", "5,6");
+        assert_eq!((ids, told.len()), (vec![], 1));
+        let named = format!("*SET_{kind}_TREE_TITLE is not carried out; the set has no members");
+        assert!(
+            told[0].contains(&named) && told[0].contains("TREE"),
+            "{told:?}"
+        );
+    }
+}
+
+#[test]
 fn the_mark_that_ends_files_of_dos_is_no_card() {
     let deck = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n*PART\nsheet\n1\n*ELEMENT_SHELL\n1,1,1,2,3";
     for end in [

@@ -120,7 +120,7 @@ impl Resolver<'_> {
         for &definition in &self.by_id[&key] {
             for member in &self.raw[definition].1.members {
                 let reference = match *member {
-                    Member::Set(id) => (key.0, id),
+                    Member::Set(id) | Member::Within(id) => (key.0, id),
                     Member::OfPartSet(id) => (SetKind::Part, id),
                     Member::Sets { first, last } => {
                         for other in self.sets_in(key, first, last) {
@@ -234,6 +234,13 @@ impl Resolver<'_> {
                 parts
                     .into_iter()
                     .try_for_each(|part| self.add_part(kind, part, to))
+            }
+            Member::Within(id) => {
+                let ids = self.resolved.get(&(kind, id)).map(|set| &set.ids);
+                let ids: BTreeSet<u64> = ids.into_iter().flatten().copied().collect();
+                self.n_left = self.n_left.saturating_sub(ids.len() as u64);
+                to.keep(&ids);
+                Ok(())
             }
             Member::Without { first, last } => {
                 to.remove(first, last);
@@ -357,6 +364,15 @@ impl Builder {
         }
         self.listed.uncover(first, last);
         self.existing.uncover(first, last);
+        self.whole.clear();
+    }
+
+    /// Takes out what is not among `ids`.
+    fn keep(&mut self, ids: &BTreeSet<u64>) {
+        self.ids.retain(|id| ids.contains(id));
+        let places = self.ids.iter().enumerate();
+        self.place = places.map(|(place, &id)| (id, place)).collect();
+        (self.listed, self.existing) = Default::default();
         self.whole.clear();
     }
 

@@ -48,6 +48,8 @@ pub(crate) enum Member {
     Range { first: u64, last: u64, step: u64 },
     /// The ids of another set of the same kind.
     Set(u64),
+    /// The ids that are not in another set of the same kind are taken out again.
+    Within(u64),
     /// The ids of all other sets of the same kind whose own ids lie in a range.
     Sets { first: u64, last: u64 },
     /// Every id there is.
@@ -93,6 +95,14 @@ pub(crate) fn read_set(
     found: &mut Diagnostics,
 ) -> Option<RawSet> {
     let mut cards = block.cards();
+    let unknown = unknown_option(block, kind);
+    if let Some(option) = unknown {
+        let unsupported = DiagnosticKind::Unsupported;
+        found.push_with(unsupported, || {
+            let message = format!("*{} is not carried out; the set has no members", block.name);
+            block.diagnose(unsupported, message).found(option)
+        });
+    }
     let title = if block.has_option("TITLE") {
         cards.next()?.title().to_owned()
     } else {
@@ -116,7 +126,7 @@ pub(crate) fn read_set(
         SetKind::Node => offsets.node,
     };
     let mut members = Vec::new();
-    for card in cards {
+    for card in cards.filter(|_| unknown.is_none()) {
         if let Err(error) = form.members(&card, of_member, offsets, &mut members) {
             let what = format!("{} set {id}", kind.label());
             found.push_with(error.kind, || card.diagnose(&error, &what));
@@ -130,6 +140,29 @@ pub(crate) fn read_set(
         is_collected: block.has_option("COLLECT"),
         at: first.offset(),
     })
+}
+
+/// Options that are read, besides those of which sets there are.
+const OPTIONS: &[&str] = &[
+    "ADD",
+    "ADVANCED",
+    "COLLECT",
+    "COLUMN",
+    "GENERAL",
+    "GENERATE",
+    "INCREMENT",
+    "INTERSECT",
+    "LIST",
+    "SMOOTH",
+    "TITLE",
+];
+
+/// An option whose cards may be of any form.
+fn unknown_option<'a>(block: &'a Block<'_>, kind: SetKind) -> Option<&'a str> {
+    let (_, word) = SetKind::ALL.iter().find(|(known, _)| *known == kind)?;
+    let options = block.name.strip_prefix(word)?.split('_');
+    let mut options = options.filter(|option| !option.is_empty());
+    options.find(|option| !OPTIONS.contains(option))
 }
 
 /// How the cards after the first list members.
@@ -149,6 +182,8 @@ enum Form {
     AddRanges,
     /// Pairs of a set's id and of a number for its kind.
     AddAdvanced,
+    /// Ids of sets, of which the members that are in all of them are meant.
+    Intersect,
     /// An option and up to seven ids.
     General,
 }
@@ -166,6 +201,8 @@ impl Form {
             Self::AddRanges
         } else if has("ADD") {
             Self::Add
+        } else if has("INTERSECT") {
+            Self::Intersect
         } else if has("GENERAL") {
             Self::General
         } else if has("COLUMN") || kind == SetKind::Part && !has("LIST") {
@@ -214,10 +251,15 @@ impl Form {
                     into.push(Member::Range { first, last, step });
                 }
             }
-            Self::Add => {
+            Self::Add | Self::Intersect => {
                 for index in 0..8 {
                     let set = shifted(card.id(EIGHT_BY_10, index)?, offsets.set);
-                    into.extend(Some(set).filter(|&id| id != 0).map(Member::Set));
+                    let member = if self == Self::Add || into.is_empty() {
+                        Member::Set(set)
+                    } else {
+                        Member::Within(set)
+                    };
+                    into.extend((set != 0).then_some(member));
                 }
             }
             Self::AddRanges => {
@@ -241,26 +283,34 @@ impl Form {
                     }
                 }
             }
-            Self::AddAdvanced => {
-                for index in [0, 2, 4, 6] {
-                    let set = shifted(card.id(EIGHT_BY_10, index)?, offsets.set);
-                    let of_nodes = matches!(card.int_or_zero(EIGHT_BY_10, index + 1)?, 0 | 1);
-                    if set != 0 && !of_nodes {
-                        let field = card.field(EIGHT_BY_10, index + 1);
-                        return Err(FieldError {
-                            kind: DiagnosticKind::Unsupported,
-                            column: field.column,
-                            found: text::decoded(field.text).into_owned(),
-                            expected: "1, the set of nodes",
-                        });
-                    }
-                    into.extend(Some(set).filter(|&id| id != 0).map(Member::Set));
-                }
-            }
+            Self::AddAdvanced => advanced_members(card, offsets, into)?,
             Self::General => general_members(card, by, offsets, into)?,
         }
         Ok(())
     }
+}
+
+/// A card of an `_ADD_ADVANCED` set: ids of sets, each with the number of its kind.
+fn advanced_members(
+    card: &Card<'_>,
+    offsets: &SetOffsets,
+    into: &mut Vec<Member>,
+) -> Result<(), FieldError> {
+    for index in [0, 2, 4, 6] {
+        let set = shifted(card.id(EIGHT_BY_10, index)?, offsets.set);
+        let of_nodes = matches!(card.int_or_zero(EIGHT_BY_10, index + 1)?, 0 | 1);
+        if set != 0 && !of_nodes {
+            let field = card.field(EIGHT_BY_10, index + 1);
+            return Err(FieldError {
+                kind: DiagnosticKind::Unsupported,
+                column: field.column,
+                found: text::decoded(field.text).into_owned(),
+                expected: "1, the set of nodes",
+            });
+        }
+        into.extend(Some(set).filter(|&id| id != 0).map(Member::Set));
+    }
+    Ok(())
 }
 
 /// A card of a `_GENERAL` set: an option in ten columns and up to seven ids.
