@@ -122,6 +122,10 @@ kinds! {
     RepeatedElement, Warning, "element repeated at the same nodes";
     /// A part id is defined twice.
     DuplicatePart, Warning, "duplicate part id";
+    /// A section id is defined twice with different cards.
+    DuplicateSection, Warning, "duplicate section id";
+    /// A set id is defined twice with different members.
+    DuplicateSet, Warning, "duplicate set id";
     /// An element without area.
     ZeroArea, Warning, "element without area";
     /// A shell with fewer than three different nodes.

@@ -70,6 +70,61 @@ fn errors_that_concern_where_things_lie_are_told_from_others() {
     }
 }
 
+#[test]
+fn ids_that_come_again_with_another_content_are_named_with_both_places() {
+    let deck = format!("{NODES}{PART}{SHELL}");
+    let base = deck.lines().count() as u64;
+    for (cards, again, kind, n_errors) in [
+        (
+            "*DEFINE_TRANSFORMATION\n5\nTRANSL,1.\n",
+            "TRANSL,2.",
+            DiagnosticKind::BadTransformation,
+            1,
+        ),
+        (
+            "*SECTION_SHELL\n1,2\n1.5\n",
+            "2.5",
+            DiagnosticKind::DuplicateSection,
+            0,
+        ),
+        (
+            "*SET_SHELL_LIST\n7\n1\n",
+            "1,2",
+            DiagnosticKind::DuplicateSet,
+            0,
+        ),
+    ] {
+        let same = read_text(format!("{deck}{cards}{cards}"));
+        assert!(same.diagnostics.is_empty(), "{:?}", all(&same));
+        let line_of_content = cards.lines().last().unwrap();
+        let other = cards.replace(line_of_content, again);
+        let model = read_text(format!("{deck}{cards}{other}"));
+        let found = only(&model);
+        assert_eq!(
+            (found.kind, model.diagnostics.n_geometry_errors()),
+            (kind, n_errors)
+        );
+        assert!(line(&found) > base + 3, "{found}");
+        let first = [base + 1, base + 2].map(|line| format!("at main.k:{line}:1)"));
+        assert!(
+            first.iter().any(|first| found.message.contains(first)),
+            "{found}"
+        );
+    }
+    // The first transformation and the first section count, in whatever order they are used.
+    let include = "*INCLUDE_TRANSFORM\npart.k\n\n\n\n5\n";
+    let moves = |x: f64| format!("*DEFINE_TRANSFORMATION\n5\nTRANSL,{x}\n");
+    let main = format!(
+        "*SECTION_SHELL\n1,2\n1.5\n{}{include}{}",
+        moves(1.0),
+        moves(2.0)
+    );
+    let part = deck + "*SECTION_SHELL\n1,2\n2.5\n";
+    let model = read_files(&Memory::new().with("main.k", main).with("part.k", part));
+    assert_eq!(model.nodes.position_of(1).unwrap().x, 1.0);
+    assert_eq!(model.shell_thickness(0), Some([1.5; 4]));
+}
+
 mod titles {
     use super::*;
 

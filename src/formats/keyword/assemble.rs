@@ -20,7 +20,7 @@ use super::results::FormingCount;
 use super::sets::RawSet;
 use super::shells::{ElementOffsets, PackedIds, PartIds, ShellChunk, find_element};
 use super::solids::{RawSolid, SolidChunk};
-use super::source_file::SourceFile;
+use super::source_file::{Place, SourceFile};
 use super::transform::Transformation;
 use super::unit_clues::UnitClues;
 use crate::geometry::Point3;
@@ -150,11 +150,12 @@ pub(crate) struct Assembly {
     pub found: Diagnostics,
     pub unit_clues: UnitClues,
     pub forming: RawForming,
-    pub sections: Vec<Section>,
+    pub(super) sections: Vec<Section>,
+    section_places: HashMap<u64, (usize, Place)>,
     pub materials: Vec<Material>,
     pub shell_control: ShellControl,
     pub sets: Vec<(Arc<SourceFile>, RawSet)>,
-    pub transformations: BTreeMap<u64, Transformation>,
+    pub(super) transformations: BTreeMap<u64, (Transformation, Place)>,
     pub node_thickness: Vec<NodeThickness>,
     pub stamped_includes: Vec<StampedInclude>,
     pub(super) node_ids: Vec<u64>,
@@ -300,6 +301,47 @@ impl Assembly {
                 plies: raw.plies,
                 is_defined: true,
             };
+        }
+    }
+
+    /// Adds sections, each with the byte offset of its card; of sections with the same id the first counts.
+    pub(crate) fn add_sections(&mut self, sections: Vec<(Section, usize)>, file: &Arc<SourceFile>) {
+        for (section, at) in sections {
+            let id = section.id;
+            let Some((index, first)) = self.section_places.get(&id) else {
+                let place = (self.sections.len(), Place::new(file, at));
+                self.section_places.insert(id, place);
+                self.sections.push(section);
+                continue;
+            };
+            if self.sections[*index] != section {
+                let kind = DiagnosticKind::DuplicateSection;
+                self.found.push_with(kind, || {
+                    let first = first.position();
+                    let message =
+                        format!("section {id} is defined again and differently (first at {first}), the first counts");
+                    Diagnostic::new(kind, message).at(file.position(at))
+                });
+            }
+        }
+    }
+
+    /// Adds a transformation. One that is defined again and differently stops the solver; of these the first counts.
+    pub(crate) fn add_transformation(&mut self, id: u64, new: Transformation, place: Place) {
+        let Some((known, first)) = self.transformations.get(&id) else {
+            self.transformations.insert(id, (new, place));
+            return;
+        };
+        if *known != new {
+            let kind = DiagnosticKind::BadTransformation;
+            self.found.push_with(kind, || {
+                let first = first.position();
+                let message = format!(
+                    "transformation {id} is defined again and differently (first at {first}), which LS-DYNA refuses; \
+                     the first counts"
+                );
+                Diagnostic::new(kind, message).at(place.position())
+            });
         }
     }
 

@@ -23,7 +23,7 @@ use super::parameter::ParameterTable;
 use super::parts::{read_parts, read_shell_control, read_shell_sections};
 use super::results::FormingCount;
 use super::sets::{SetKind, read_set};
-use super::source_file::SourceFile;
+use super::source_file::{Place, SourceFile};
 use super::transform::Transformation;
 use super::{chunks, nodes, resolve, shells, solids};
 use crate::monitor::{Cancelled, Monitor};
@@ -285,7 +285,7 @@ impl Reader<'_> {
             let found = &mut assembly.found;
             let sections =
                 found.beside_geometry(|found| read_shell_sections(block, &context.parts(), found));
-            assembly.sections.extend(sections);
+            assembly.add_sections(sections, file);
         } else if name == "CONTROL_SHELL" {
             read_shell_control(block, &mut assembly.shell_control);
         } else if let Some(kind) = SetKind::of_keyword(name) {
@@ -296,7 +296,8 @@ impl Reader<'_> {
             if let Some((id, mut transformation)) = read {
                 transformation.offset_nodes(context.offsets.node);
                 let id = nodes::shifted(id, context.offsets.define);
-                assembly.transformations.insert(id, transformation);
+                let place = Place::new(file, block.offset);
+                assembly.add_transformation(id, transformation, place);
             }
         } else if is_forming(name) {
             let units = context.results();

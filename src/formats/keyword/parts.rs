@@ -204,12 +204,13 @@ fn plies(card: &Card<'_>) -> Option<(f64, f64)> {
     Some((values[1].unwrap_or(0.0), values[5].unwrap_or(0.0)))
 }
 
-/// Reads `*SECTION_SHELL` with its options. Sections are repeated below one keyword.
+/// Reads `*SECTION_SHELL` with its options, each section with the byte offset of its card. Sections are repeated
+/// below one keyword.
 pub(crate) fn read_shell_sections(
     block: &Block<'_>,
     offsets: &PartOffsets,
     found: &mut Diagnostics,
-) -> Vec<Section> {
+) -> Vec<(Section, usize)> {
     let mut sections = Vec::new();
     let mut cards = block.cards();
     loop {
@@ -231,7 +232,7 @@ pub(crate) fn read_shell_sections(
             break;
         };
         match section(&first, &second, offsets) {
-            Ok(section) => sections.push(section),
+            Ok(section) => sections.push((section, first.offset())),
             Err((card, error)) => {
                 found.push_with(error.kind, || card.diagnose(&error, "the shell section"));
             }

@@ -147,10 +147,8 @@ pub(super) fn with_position(diagnostic: Diagnostic, position: Option<Position>) 
 
 /// Parts take the thickness of their section, unless plies gave them one.
 fn give_thickness_to_parts(assembly: &mut Assembly, model: &mut Model) {
-    let mut by_id: BTreeMap<u64, usize> = BTreeMap::new();
-    for (index, section) in assembly.sections.iter().enumerate() {
-        by_id.entry(section.id).or_insert(index);
-    }
+    let sections = assembly.sections.iter().enumerate();
+    let by_id: BTreeMap<u64, usize> = sections.map(|(i, section)| (section.id, i)).collect();
     tell_undefined_parts(assembly, model);
     for part in &mut assembly.parts {
         if !part.is_defined {
@@ -435,7 +433,7 @@ fn tell_files(model: &mut Model, motion: &Motion, matrix: &Matrix4) {
 
 fn matrix(assembly: &Assembly, model: &Model, id: u64) -> Result<Matrix4, String> {
     let transformation = assembly.transformations.get(&id);
-    let transformation = transformation.ok_or("is not defined")?;
+    let (transformation, _) = transformation.ok_or("is not defined")?;
     let matrix = transformation
         .matrix(&|node| model.nodes.position_of(node))
         .map_err(|error| format!("cannot be carried out: {error}"))?;

@@ -42,6 +42,9 @@ pub(crate) fn resolve_sets(
         let same = by_id.entry((set.kind, set.id)).or_default();
         // The last definition counts, unless sets are collected.
         if !set.is_collected {
+            if let Some(&earlier) = same.last() {
+                tell_other_members(&raw[earlier], &raw[index], found);
+            }
             same.clear();
         }
         same.push(index);
@@ -60,6 +63,25 @@ pub(crate) fn resolve_sets(
         resolver.resolve(key)?;
     }
     Ok(resolver.resolved)
+}
+
+/// Names a set that is defined again with other members.
+fn tell_other_members(
+    (first_file, first): &(Arc<SourceFile>, RawSet),
+    (file, set): &(Arc<SourceFile>, RawSet),
+    found: &mut Diagnostics,
+) {
+    if first.members == set.members {
+        return;
+    }
+    let kind = DiagnosticKind::DuplicateSet;
+    found.push_with(kind, || {
+        let (label, id) = (set.kind.label(), set.id);
+        let before = Place::new(first_file, first.at).position();
+        let message =
+            format!("{label} set {id} is defined again with other members (before at {before}), the last counts");
+        Diagnostic::new(kind, message).at(Place::new(file, set.at).position())
+    });
 }
 
 struct Resolver<'a> {
