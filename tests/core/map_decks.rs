@@ -220,6 +220,42 @@ const WITH_HISTORY: &str = "\
 
 const BARLAT: &str = "*MAT_3-PARAMETER_BARLAT\n         5    7.8E-9  210000.0       0.3\n";
 
+#[test]
+fn history_keeps_its_numbers_where_stresses_are_multiplied_which_is_told() {
+    let crash = crash(1, BARLAT).replace("     0.833         3\n", "     0.833         2\n");
+    let sheet = stamped(1, WITH_HISTORY);
+    let by_mass = "*KEYWORD\n*INCLUDE_TRANSFORM\nsheet.k\n\n\n       2.0\n\n*END\n";
+    let told = |deck: &str, factor: &str| {
+        let pair = Pair::new(&crash, deck);
+        std::fs::write(pair.path("sheet.k"), &sheet).unwrap();
+        let law = [
+            "--stamped-material",
+            "36",
+            "--quantities",
+            "full",
+            "--out",
+            "out.k",
+        ];
+        let output = pair.map(&[&law[..], &["--stress-factor", factor]].concat());
+        assert!(output.status.success(), "{}", errors(&output));
+        let written = model(&pair.path("out.k"));
+        let card = written.forming.stresses().next().unwrap();
+        let tensor = card.tensors_of(0)[0][0];
+        let found = (
+            card.points[0].stress[0].round(),
+            card.history_of(0)[0],
+            tensor.round(),
+        );
+        (
+            found,
+            errors(&output).contains("multiplied by 2; history variables"),
+        )
+    };
+    assert_eq!(told(&sheet, "1"), ((100.0, 11.0, 1.0), false));
+    assert_eq!(told(&sheet, "2"), ((200.0, 11.0, 1.0), true));
+    assert_eq!(told(by_mass, "1"), ((200.0, 11.0, 1.0), true));
+}
+
 /// The nodes of a deck turned by 90° about z.
 fn quarter_turned(deck: &str) -> String {
     let line = |line: &str| {

@@ -10,7 +10,7 @@ use crate::mapping::{Facing, MapOptions, Quantities, SourcePart, Status};
 use crate::pipeline::load::{LoadedPart, same_parts_line};
 use crate::registration::guess_unit;
 use crate::role::PerRole;
-use crate::text::{counted, length, parts_by_id};
+use crate::text::{counted, length, parts_by_id, trimmed};
 
 /// The parts of a stamped file that have neither stresses nor strains, and no thickness but that of their
 /// section; in words.
@@ -56,6 +56,7 @@ pub(super) fn warnings(
     warnings.extend(of_elements(run));
     warnings.extend(other_unit(run, stamped));
     warnings.extend(stress_units(run, crash, stamped));
+    warnings.extend(unscaled_history(run, stamped));
     warnings.extend(unknown_law(run));
     if let Some(ratio) = run.unusual_thickness() {
         warnings.push(format!(
@@ -130,6 +131,27 @@ fn stress_units(run: &MapRun, crash: &LoadedPart, stamped: &[PlacedPart<'_>]) ->
         stress_unit_question(crash, &crash_parts, placed.part, source)
     })
     .collect()
+}
+
+/// Names the files whose history variables keep their numbers although their stresses were multiplied: which of
+/// them are stresses, no file says.
+fn unscaled_history(run: &MapRun, stamped: &[PlacedPart<'_>]) -> Vec<String> {
+    let is_mapped = run.mapped.history.iter().any(|h| h.n_present() > 0);
+    let files = stamped.iter().zip(&run.sources).enumerate();
+    let files = files.filter(|(_, (_, source))| is_mapped && !source.history.is_empty());
+    let told = files.filter_map(|(file, (placed, _))| {
+        let given = run.recipe.stress_factor(file).unwrap_or(1.0);
+        let includes = placed.part.model.files.iter();
+        let mut factors = includes.map(|file| given * file.included_as.stress_factor);
+        let factor = factors.find(|factor| *factor != 1.0)?;
+        Some(format!(
+            "{}: its stresses were multiplied by {}; history variables, and the tensors among them, keep their \
+             numbers, because no file says which of them are stresses",
+            placed.part.file_name(),
+            trimmed(factor, 9)
+        ))
+    });
+    told.collect()
 }
 
 /// Says that the material law given for the stamped parts is none of those that could be meant. Where history
