@@ -355,6 +355,17 @@ fn rounded(matrix: &Matrix3, width: usize) -> Result<Matrix3, CardError> {
     Ok(result)
 }
 
+/// Says that the solver may map from the wrong sheet: with `ISYM` it has the mirrored and the unmirrored one, and
+/// both can lie on the crash part if the stamped part reaches over the plane of the mirror.
+pub fn two_sheets(crash_from_stamped: &Similarity, bounds: &Aabb) -> Option<String> {
+    let reaches_over = bounds.min.x < 0.0 && bounds.max.x > 0.0;
+    (crash_from_stamped.is_mirrored() && reaches_over).then(|| {
+        "the stamped part reaches over the plane of the mirror, x = 0, so that its unmirrored sheet may lie on the \
+         crash part too; name the moved deck (--moved), which holds the mirrored sheet alone, with a matrix of unity"
+            .to_owned()
+    })
+}
+
 fn stamped_part(
     asked: &Similarity,
     options: &CardOptions,
@@ -379,8 +390,15 @@ fn stamped_part(
         "$ The matrix carries the stamped part to the crash part: crash = R * stamped + t"
     });
     if asked.is_mirrored() {
-        sheet.line("$ Opposite hand: ISYM 1 with IAFTER 0 mirrors the stamped part at x = 0 first");
+        sheet
+            .line("$ Opposite hand: ISYM 1 with IAFTER 0 mirrors the stamped part at x = 0 first;");
+        sheet.line("$ its unmirrored sheet stays beside the mirrored one and gets the same matrix");
     }
+    sheet.comments(
+        &two_sheets(asked, &options.bounds)
+            .into_iter()
+            .collect::<Vec<_>>(),
+    );
     let (target, id) = match options.receiver {
         Receiver::Part(id) => ("PART", id),
         Receiver::Set(id) => ("SET", id),

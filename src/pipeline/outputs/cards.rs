@@ -2,12 +2,13 @@
 
 use std::path::{Component, Path, PathBuf};
 
+use crate::assess::Verdict;
 use crate::formats::Selection;
 use crate::pipeline::PipelineError;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::match_parts::MatchRun;
 use crate::pipeline::units::PairUnits;
-use crate::report::cards::{check_file_name, file_name_fault};
+use crate::report::cards::{check_file_name, file_name_fault, two_sheets};
 use crate::report::{CardForm, CardOptions, Cards, Receiver, build_id, write_cards};
 use crate::role::PerRole;
 use crate::text::Lengths;
@@ -55,6 +56,27 @@ pub fn cards(
         ..CardOptions::default()
     };
     Ok(write_cards(form, &run.crash_from_stamped, &options)?)
+}
+
+/// What is to be told of cards: what rounding costs, and why they may not be what is wanted.
+pub fn notes(
+    form: CardForm,
+    run: &MatchRun,
+    parts: PerRole<&LoadedPart>,
+    cards: &Cards,
+) -> Vec<String> {
+    let error = cards.largest_node_error(parts.stamped.mesh.positions());
+    let unit = Lengths::new(PairUnits::of(parts.map(Some)).lengths).suffix();
+    let verdict = run.assessment.verdict;
+    let poor = (verdict == Verdict::Poor).then(|| {
+        let advice = verdict.advice().trim_end_matches('.').to_lowercase();
+        format!("the pose is {}: {advice}", verdict.label())
+    });
+    let is_stamped = form != CardForm::IncludeTransform;
+    let two_sheets = two_sheets(&run.crash_from_stamped, &parts.stamped.mesh.aabb());
+    let rounding = format!("read back: rounding moves no node by more than {error:.1e}{unit}");
+    let all = [Some(rounding), poor, two_sheets.filter(|_| is_stamped)];
+    all.into_iter().flatten().collect()
 }
 
 /// What can be known before a match: that the cards can name the file and hold its unit, and that

@@ -12,13 +12,11 @@ use super::map::{MapRun, OtherResult, WriteKind, elements_path};
 use super::match_parts::{MatchRun, with_alternative};
 use super::units::PairUnits;
 use super::write_file::write_file_unless_cancelled;
-use crate::assess::Verdict;
 use crate::formats::Format;
 use crate::geometry::{Similarity, TriMesh};
 use crate::monitor::Monitor;
 use crate::report::{CardForm, MatrixForm};
 use crate::role::{PerRole, Role};
-use crate::text::Lengths;
 
 pub mod cards;
 mod check;
@@ -370,16 +368,7 @@ impl Output {
             Self::Cards(form) => {
                 let (run, parts) = input.matched(monitor)?;
                 let cards = cards::cards(form, &run, parts, folder)?;
-                let error = cards.largest_node_error(parts.stamped.mesh.positions());
-                let unit = Lengths::new(PairUnits::of(parts.map(Some)).lengths).suffix();
-                let note =
-                    format!("read back: rounding moves no node by more than {error:.1e}{unit}");
-                let verdict = run.assessment.verdict;
-                let warning = (verdict == Verdict::Poor).then(|| {
-                    let advice = verdict.advice().trim_end_matches('.').to_lowercase();
-                    format!("the pose is {}: {advice}", verdict.label())
-                });
-                let notes = std::iter::once(note).chain(warning).collect();
+                let notes = cards::notes(form, &run, parts, &cards);
                 (cards.text, notes)
             }
             Self::Mesh(mesh) => {

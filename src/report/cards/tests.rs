@@ -116,6 +116,33 @@ $#    isym    iafter   percele    iortho             isrcout     mtype
 }
 
 #[test]
+fn cards_of_the_opposite_hand_tell_of_the_second_sheet() {
+    let motion = pose([0.1, 0.2, 0.3], [1.0, 2.0, 3.0], true);
+    let beside = Aabb {
+        min: Point3::new(5.0, -9.0, -9.0),
+        max: Point3::new(9.0, 9.0, 9.0),
+    };
+    let told = |form, motion: &Similarity, bounds| {
+        let options = CardOptions {
+            bounds,
+            ..CardOptions::default()
+        };
+        let text = write(form, motion, &options).unwrap().text;
+        ["unmirrored sheet stays", "(--moved)"].map(|words| text.contains(words))
+    };
+    let around = CardOptions::default().bounds;
+    for form in [CardForm::StampedPart, CardForm::StampedPartInverse] {
+        assert_eq!(told(form, &motion, beside), [true, false]);
+        assert_eq!(told(form, &motion, around), [true, true]);
+        assert_eq!(told(form, &Similarity::identity(), around), [false, false]);
+    }
+    assert_eq!(
+        told(CardForm::IncludeTransform, &motion, around),
+        [false, false]
+    );
+}
+
+#[test]
 fn what_cannot_be_written_is_refused() {
     let scaled = Similarity::from_scale(25.4);
     let options = CardOptions::default();
