@@ -202,6 +202,20 @@ pub fn check_file_name(name: &str) -> Result<(), CardError> {
     }
 }
 
+/// The lines of a deck that a file name takes, of at most 80 columns.
+pub fn name_lines(name: &str) -> Vec<String> {
+    let characters: Vec<char> = name.chars().collect();
+    let (mut rest, mut lines) = (&characters[..], Vec::new());
+    // The last line may be full; the others need two columns for the sign that they go on.
+    while rest.len() > 80 {
+        let (line, after) = rest.split_at(78);
+        lines.push(line.iter().collect::<String>() + " +");
+        rest = after;
+    }
+    lines.push(rest.iter().collect());
+    lines
+}
+
 /// Writes the pose `crash_from_stamped` as cards and reads them back. A mirrored pose becomes a
 /// mirror in the plane x = 0 of the stamped part and a rotation after it.
 pub fn write(
@@ -284,15 +298,9 @@ impl Sheet {
 
     fn file_name(&mut self, name: &str) -> Result<(), CardError> {
         check_file_name(name)?;
-        let characters: Vec<char> = name.chars().collect();
-        let mut rest = &characters[..];
-        // The last line may be full; the others need two columns for the sign that they go on.
-        while rest.len() > 80 {
-            let (line, after) = rest.split_at(78);
-            self.line(&(line.iter().collect::<String>() + " +"));
-            rest = after;
+        for line in name_lines(name) {
+            self.line(&line);
         }
-        self.line(&rest.iter().collect::<String>());
         Ok(())
     }
 

@@ -26,6 +26,7 @@ use crate::formats::Selection;
 use crate::geometry::Similarity;
 use crate::mapping::Status;
 use crate::monitor::Monitor;
+use crate::report::cards::name_lines;
 use crate::report::html::CarReport;
 use crate::report::{DIRECTION, build_id};
 use crate::role::PerRole;
@@ -204,7 +205,7 @@ pub fn map_car(
     };
     // A deck without anything mapped would pass for a result.
     if !included.is_empty() {
-        let master = master(&record, crash, &included);
+        let master = master(&record, &crash.file_name(), &included);
         write_file(&recipe.folder.join(MASTER), master.as_bytes())?;
     }
     if recipe.has_pages {
@@ -482,11 +483,8 @@ fn name_of(path: &Path) -> String {
 }
 
 /// The deck that includes the results of all parts.
-fn master(record: &CarRecord, crash: &LoadedPart, included: &[String]) -> String {
-    let mut text = format!(
-        "*KEYWORD\n$ forming results mapped onto {}\n",
-        crash.file_name()
-    );
+fn master(record: &CarRecord, crash: &str, included: &[String]) -> String {
+    let mut text = format!("*KEYWORD\n$ forming results mapped onto {crash}\n");
     for row in &record.rows {
         let [file, part, state, ..] = row.cells();
         text.push_str(&format!("$ {file} on part {part}: {state}\n"));
@@ -499,7 +497,7 @@ fn master(record: &CarRecord, crash: &LoadedPart, included: &[String]) -> String
         text.push_str(&format!("$ {}\n", copy.text()));
     }
     for name in included {
-        text.push_str(&format!("*INCLUDE\n{name}\n"));
+        text.push_str(&format!("*INCLUDE\n{}\n", name_lines(name).join("\n")));
     }
     text.push_str("*END\n");
     text
@@ -522,4 +520,29 @@ fn car_page(record: &CarRecord, crash: &LoadedPart) -> String {
             .collect(),
     };
     page.write()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_included_files_go_on_over_lines() {
+        let record = CarRecord {
+            build: "build".to_owned(),
+            schema: "",
+            direction: String::new(),
+            crash: "crash.k".to_owned(),
+            rows: vec![CarRow::new(Path::new("empty.dynain"))],
+            copies: Vec::new(),
+        };
+        let names = ["n".repeat(200), "short.k".to_owned()];
+        let text = master(&record, "crash.k", &names);
+        let joined = text.replace(" +\n", "");
+        for name in &names {
+            assert!(joined.contains(&format!("*INCLUDE\n{name}\n")), "{text}");
+        }
+        let lines = text.lines().filter(|line| !line.starts_with('$'));
+        assert_eq!(lines.map(str::len).max(), Some(80));
+    }
 }
