@@ -129,9 +129,10 @@ impl Default for ReadOptions {
 }
 
 /// A file format.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Format {
     /// LS-DYNA keyword deck, also a dynain.
+    #[default]
     Keyword,
     /// STL, binary or ASCII.
     Stl,
@@ -216,6 +217,7 @@ pub fn read_from(
         Format::Obj => obj::read(&bytes, path, monitor)?,
         Format::Ply => ply::read(&bytes, path, monitor)?,
     };
+    model.format = format;
     if let Some(by_name) = Format::of_name(path).filter(|&by_name| by_name != format) {
         let (named, is) = (by_name.label(), format.label());
         let message = format!("the file is named like {named} but is {is}, and is read as that");

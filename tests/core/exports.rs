@@ -369,6 +369,24 @@ fn cards_of_a_poor_pose_say_that_it_is_poor() {
 }
 
 #[test]
+fn cards_of_a_file_that_the_solver_cannot_include_say_so() {
+    let name = Path::new("stamped.stl");
+    let mesh = &matched().parts.stamped.mesh;
+    let files = Memory::new().with(name, shapematch::formats::stl::write_binary(mesh));
+    let stamped = load_from(&files, name, &LoadSettings::default(), &Monitor::silent()).unwrap();
+    let mut input = matched().input();
+    input.parts.stamped = Some(Arc::new(stamped));
+    for &form in CardForm::ALL {
+        let made = Output::Cards(form)
+            .make(&input, None, &Monitor::silent())
+            .unwrap();
+        let told = "stamped.stl is STL, which the solver cannot include";
+        assert!(made.notes[1].starts_with(told), "{:?}", made.notes);
+        assert!(std::str::from_utf8(&made.bytes).unwrap().contains(told));
+    }
+}
+
+#[test]
 fn an_alternative_is_measured_anew_before_it_is_written() {
     let mut run = MatchRun::clone(&matched().run);
     let mut outcome = shapematch::registration::MatchOutcome::clone(&run.outcome);

@@ -17,6 +17,7 @@ pub(crate) use surface::has_area;
 pub use surface::{PartSummary, Selection, SelectionError, Surface};
 pub use titles::RawTitles;
 
+use super::Format;
 use super::diagnostic::{Diagnostics, Position};
 use super::hash::FileHash;
 use super::keyword::card::Layout;
@@ -329,6 +330,8 @@ pub struct ReadFile {
 /// Lengths are in the deck's own unit. Indices are dense and in the order of the files.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Model {
+    /// What the file is.
+    pub format: Format,
     /// The deck's title; empty if it has none.
     pub title: String,
     /// Titles as the file has them, where they are not shown byte by byte.

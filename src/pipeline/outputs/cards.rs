@@ -3,7 +3,7 @@
 use std::path::{Component, Path, PathBuf};
 
 use crate::assess::Verdict;
-use crate::formats::Selection;
+use crate::formats::{Format, Selection};
 use crate::pipeline::PipelineError;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::match_parts::MatchRun;
@@ -43,6 +43,7 @@ pub fn cards(
     comments.extend(alternative.map(|told| told.replace('×', "x")));
     comments.extend(PairUnits::sentences(parts));
     comments.extend(PairUnits::stress_warning(parts));
+    comments.extend(no_deck(stamped));
     comments.push(build_id());
     let options = CardOptions {
         file_name: folder
@@ -75,8 +76,26 @@ pub fn notes(
     let is_stamped = form != CardForm::IncludeTransform;
     let two_sheets = two_sheets(&run.crash_from_stamped, &parts.stamped.mesh.aabb());
     let rounding = format!("read back: rounding moves no node by more than {error:.1e}{unit}");
-    let all = [Some(rounding), poor, two_sheets.filter(|_| is_stamped)];
+    let all = [
+        Some(rounding),
+        poor,
+        two_sheets.filter(|_| is_stamped),
+        no_deck(parts.stamped),
+    ];
     all.into_iter().flatten().collect()
+}
+
+/// Says that the solver cannot read the stamped file.
+fn no_deck(stamped: &LoadedPart) -> Option<String> {
+    let format = stamped.model.format;
+    (format != Format::Keyword).then(|| {
+        format!(
+            "{} is {}, which the solver cannot include; write it as a keyword file (--converted) and name that on the \
+             cards",
+            stamped.file_name(),
+            format.label()
+        )
+    })
 }
 
 /// What can be known before a match: that the cards can name the file and hold its unit, and that
