@@ -26,6 +26,8 @@ pub fn read(bytes: &[u8], path: &Path, monitor: &Monitor) -> Result<Model, Forma
         let mut text = Text {
             words: Words::new(bytes),
             corners: Vec::new(),
+            is_in_solid: false,
+            is_in_facet: false,
             polygons,
         };
         text.read(monitor)?;
@@ -158,6 +160,9 @@ impl<'a> Words<'a> {
 struct Text<'a> {
     words: Words<'a>,
     corners: Vec<[f64; 3]>,
+    /// A solid, a facet that has begun and not ended.
+    is_in_solid: bool,
+    is_in_facet: bool,
     polygons: Polygons,
 }
 
@@ -174,25 +179,32 @@ impl Text<'_> {
                 b"solid" => {
                     let name = self.words.name();
                     self.polygons.begin_part(name);
+                    self.is_in_solid = true;
                 }
                 b"endsolid" => {
                     self.words.name();
+                    self.is_in_solid = false;
                 }
                 b"vertex" => self.vertex(),
                 b"endfacet" => self.end_facet(),
                 b"normal" | b"color" => while self.words.next_if(real).is_some() {},
-                b"facet" | b"outer" | b"loop" | b"endloop" => {}
+                b"facet" => self.is_in_facet = true,
+                b"outer" | b"loop" | b"endloop" => {}
                 _ => self.polygons.warn(line, || {
                     let text = String::from_utf8_lossy(word).into_owned();
                     format!("{text:?} is not a word of STL")
                 }),
             }
         }
-        if !self.corners.is_empty() {
-            let line = Some(self.words.line);
-            self.polygons
-                .warn(line, || "the file ends within a facet".to_owned());
-        }
+        let cut = if self.is_in_facet || !self.corners.is_empty() {
+            "the file ends within a facet, which is left out; the rest of it is probably missing"
+        } else if self.is_in_solid {
+            "the file ends without endsolid; facets at its end may be missing"
+        } else {
+            return Ok(());
+        };
+        let line = Some(self.words.line);
+        self.polygons.warn(line, || cut.to_owned());
         Ok(())
     }
 
@@ -220,6 +232,7 @@ impl Text<'_> {
             add(&mut self.polygons, line, &self.corners);
         }
         self.corners.clear();
+        self.is_in_facet = false;
     }
 }
 

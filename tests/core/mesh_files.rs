@@ -163,7 +163,7 @@ fn both_byte_orders_of_ply() {
 #[test]
 fn oddities_are_named_with_their_place() {
     let text = "solid a\nfacet normal 0 0 1\nvertex 0 0 0\nvertex 1 0\nvertex 0 1 0\nendfacet\n\
-        facet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendfacet\nwhat\n";
+        facet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendfacet\nwhat\nendsolid\n";
     let model = read("a.stl", text).unwrap();
     assert_eq!(model.shells.len(), 1);
     let lines: Vec<u64> = model
@@ -225,10 +225,33 @@ fn a_file_cut_anywhere_is_no_panic() {
 }
 
 #[test]
+fn a_text_stl_that_is_cut_off_is_told() {
+    let text = String::from_utf8(ascii_stl(&strip(), "x")).unwrap();
+    let last = text.rfind("facet normal").unwrap();
+    // Between two facets, behind words of the last one, and before its last word.
+    for (cut, words) in [
+        (last, "without endsolid"),
+        (last + 5, "within a facet"),
+        (text.find("outer loop").unwrap() + 10, "within a facet"),
+        (text.rfind("vertex").unwrap(), "within a facet"),
+        (text.rfind("endfacet").unwrap(), "within a facet"),
+        (text.rfind("endsolid").unwrap(), "without endsolid"),
+    ] {
+        // One whole facet at least, without which there is no mesh.
+        let whole = &text[..text.find("endfacet").unwrap() + 9];
+        let rest = &text[text.find('\n').unwrap() + 1..cut];
+        let model = read("a.stl", format!("{whole}{rest}")).unwrap();
+        let told: Vec<String> = model.diagnostics.iter().map(ToString::to_string).collect();
+        assert_eq!(told.len(), 1, "{told:?}");
+        assert!(told[0].contains(words), "{told:?}");
+    }
+}
+
+#[test]
 fn numbers_that_are_no_place_and_indices_of_no_point_are_named() {
     let stl = "solid\nfacet\nvertex 0 0 0\nvertex 1e999 0 0\nvertex 0 1 0\nendfacet\n\
         facet\nvertex 0 0 0\nvertex nan 0 0\nvertex 0 1 0\nendfacet\n\
-        facet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendfacet\n";
+        facet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendfacet\nendsolid\n";
     let obj = "v 0 0 0\nv inf 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 1 4 3\n";
     let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
         property float z\nelement face 4\nproperty list uchar int vertex_index\nend_header\n\
