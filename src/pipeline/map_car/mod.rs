@@ -89,14 +89,19 @@ const REPORT: &str = "report.html";
 fn stems(stamped: &[StampedFile]) -> Vec<String> {
     let reserved = [MASTER, REPORT].map(|name| stem_of(Path::new(name)));
     let mut taken: BTreeSet<String> = reserved.into_iter().collect();
+    // The deck, and the one with its elements beside it.
+    let both = |stem: &str| {
+        let beside = stem_of(&elements_path(Path::new(&format!("{stem}.k"))));
+        [stem.to_lowercase(), beside.to_lowercase()]
+    };
     let mut name = |file: &StampedFile| {
         let stem = stem_of(&file.path);
         let mut numbered = (2..).map(|n| format!("{stem}_{n}"));
         let mut free = stem.clone();
-        while taken.contains(&free.to_lowercase()) {
+        while both(&free).iter().any(|stem| taken.contains(stem)) {
             free = numbered.next().unwrap_or_default();
         }
-        taken.insert(free.to_lowercase());
+        taken.extend(both(&free));
         free
     };
     stamped.iter().map(&mut name).collect()
@@ -525,6 +530,22 @@ fn car_page(record: &CarRecord, crash: &LoadedPart) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_two_files_have_one_name() {
+        let stems_of = |names: &[&str]| {
+            let file = |name: &&str| StampedFile {
+                path: PathBuf::from(name),
+                settings: LoadSettings::default(),
+                stress_factor: None,
+            };
+            stems(&names.iter().map(file).collect::<Vec<_>>())
+        };
+        let names = ["p.dynain", "p_elements.dynain", "q/P.k", "mapped.k"];
+        let expected = ["p", "p_elements_2", "P_2", "mapped_2"];
+        assert_eq!(stems_of(&names), expected);
+        assert_eq!(stems_of(&["p_elements.k", "p.k"]), ["p_elements", "p_2"]);
+    }
 
     #[test]
     fn names_of_included_files_go_on_over_lines() {
