@@ -29,7 +29,8 @@ fn main() -> ExitCode {
 
 /// The threads of the work; those of a window stand behind it.
 fn threads(cli: &Cli) -> rayon::ThreadPoolBuilder {
-    let threads = rayon::ThreadPoolBuilder::new().num_threads(cli.threads);
+    let n_cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = rayon::ThreadPoolBuilder::new().num_threads(cli.n_threads(n_cores));
     #[cfg(feature = "gui")]
     if cli.command.is_none() {
         return threads.start_handler(|_| shapematch::ui::step_back());

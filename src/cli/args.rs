@@ -36,14 +36,23 @@ pub struct Cli {
     #[arg(long, conflicts_with_all = ["files", "example"])]
     pub realistic: bool,
 
-    /// Number of threads, at most 1024; 0 uses one per core.
-    // More threads than any machine of today has cores only take its memory.
+    /// Number of threads, at most 1024; 0 uses one per core, and never more than four per core are used.
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, default_value_t = 0, value_parser = count(0..=1024))]
     pub threads: usize,
 
     /// Print no progress and no warnings; results and errors are still printed.
     #[arg(long, short, global = true)]
     pub quiet: bool,
+}
+
+/// More of them only wait for each other.
+const MOST_THREADS_PER_CORE: usize = 4;
+
+impl Cli {
+    /// The threads to be used on a machine with so many cores; 0 for one per core.
+    pub fn n_threads(&self, n_cores: usize) -> usize {
+        self.threads.min(MOST_THREADS_PER_CORE * n_cores.max(1))
+    }
 }
 
 /// The subcommands of `shapematch`.
@@ -322,3 +331,22 @@ Examples:
   shapematch match crash.k stamped.dynain --method paper --triangles 2000
 
 Exit status: 0 pose found (good or check), 3 pose found but poor, 1 failed, 2 wrong usage.";
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser as _;
+
+    use super::*;
+
+    #[test]
+    fn there_are_at_most_four_threads_per_core() {
+        let threads = |given: &str, n_cores: usize| {
+            let cli = Cli::parse_from(["shapematch", "--threads", given]);
+            cli.n_threads(n_cores)
+        };
+        assert_eq!(threads("1024", 2), 8);
+        assert_eq!(threads("3", 2), 3);
+        assert_eq!(threads("3", 0), 3);
+        assert_eq!(threads("0", 64), 0);
+    }
+}
