@@ -126,6 +126,19 @@ fn a_deck_that_is_cut_off_among_its_elements_is_told_by_all_commands() {
         let text = String::from_utf8_lossy(&output.stdout).into_owned();
         assert!(text.contains(told), "{command:?}: {text}");
     }
+    // A line that is cut off is no end; behind a whole one the deck may be complete.
+    for (deck, words) in [
+        (cut, "*END is optional"),
+        (cut.trim_end(), "probably missing"),
+    ] {
+        std::fs::write(pair.path("crash.k"), deck).unwrap();
+        let output = pair.shapematch(&["info", "crash.k"]);
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(
+            text.contains(&format!("{told}; ")) && text.contains(words),
+            "{text}"
+        );
+    }
     // Loose cards have no end.
     std::fs::write(pair.path("crash.k"), cut.replace("*KEYWORD\n", "")).unwrap();
     let loose = pair.shapematch(&["info", "crash.k"]);

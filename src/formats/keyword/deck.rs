@@ -114,15 +114,19 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Says that a deck ends in the middle of its data, which is what a copy that was broken off looks like.
+    /// Says that a deck ends in the middle of its data, which is what a copy that was broken off looks like. Behind a
+    /// whole line it may be complete too.
     fn report_cut(&mut self, file: &SourceFile, last: &Block<'_>) {
         let name = &last.name;
         let is_data =
             ["NODE", "ELEMENT", "INITIAL"].contains(&name.split('_').next().unwrap_or(""));
         if is_data {
-            let message = format!(
-                "the file ends inside *{name} without *END; the rest of it is probably missing"
-            );
+            let rest = if file.bytes()[last.body.clone()].ends_with(b"\n") {
+                "complete, as *END is optional, or cut off behind a whole line"
+            } else {
+                "the rest of it is probably missing"
+            };
+            let message = format!("the file ends inside *{name} without *END; {rest}");
             let at = file.position(last.body.end.saturating_sub(1));
             let diagnostic = Diagnostic::new(DiagnosticKind::NoEnd, message);
             self.assembly.found.push(diagnostic.at(at));
