@@ -125,6 +125,33 @@ fn ids_that_come_again_with_another_content_are_named_with_both_places() {
     assert_eq!(model.shell_thickness(0), Some([1.5; 4]));
 }
 
+#[test]
+fn a_negative_thickness_is_named_and_not_taken() {
+    for (cards, at) in [
+        ("*ELEMENT_SHELL_THICKNESS\n2,1,1,2,3,4\n1.,1.,-1.,1.\n", 3),
+        ("*SECTION_SHELL\n1,2\n-1.5\n", 3),
+    ] {
+        let deck = format!("{NODES}{PART}{SHELL}");
+        let model = read_text(format!("{deck}{cards}"));
+        let found = only(&model);
+        assert_eq!(found.kind, DiagnosticKind::BadField, "{found}");
+        assert_eq!(line(&found), deck.lines().count() as u64 + at);
+        assert!(
+            found
+                .to_string()
+                .contains("expected a thickness that is not negative"),
+            "{found}"
+        );
+        assert_eq!(
+            model.shells.len() as u64,
+            1 + u64::from(cards.contains("ELEMENT"))
+        );
+        for shell in 0..model.shells.len() as u32 {
+            assert_eq!(model.shell_thickness(shell), None);
+        }
+    }
+}
+
 mod titles {
     use super::*;
 

@@ -6,6 +6,7 @@ use super::super::text;
 use super::block::{Block, Cards};
 use super::card::{Card, EIGHT_BY_10, FieldError};
 use super::nodes::shifted;
+use super::shells::not_negative;
 
 /// What an include adds to the ids on part and section cards, and the factor on lengths.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -250,7 +251,7 @@ fn section<'a, 'b>(
     let id = first.required_id(EIGHT_BY_10, 0).map_err(|e| (first, e))?;
     let mut thickness = [0.0; 4];
     for i in 0..4 {
-        let value = second.length(EIGHT_BY_10, i).map_err(|e| (second, e))?;
+        let value = not_negative(second, EIGHT_BY_10, i).map_err(|e| (second, e))?;
         // Blank corners take the first one's thickness.
         let value = value.filter(|&t| t != 0.0).map(|t| t * offsets.length);
         thickness[i] = value.unwrap_or(thickness[0]);

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
 use super::super::model::{Shell, ShellExtra};
+use super::super::text;
 use super::block::{Block, Cards};
 use super::card::{Card, EIGHT_BY_10, FIVE_BY_16, FieldError, Misread, TEN_BY_8, columns};
 use super::chunks::{Cut, Irregular};
@@ -453,10 +454,29 @@ fn fixed_shell(line: &[u8], columns: &[usize; 11]) -> Option<ShellCard> {
     (ids[0] != 0).then(|| ShellCard::from_ids(&ids))
 }
 
+/// A thickness; `None` for a blank field.
+pub(crate) fn not_negative(
+    card: &Card<'_>,
+    widths: &[u8],
+    index: usize,
+) -> Result<Option<f64>, FieldError> {
+    let value = card.length(widths, index)?;
+    if value.is_some_and(|value| value < 0.0) {
+        let field = card.field(widths, index);
+        return Err(FieldError {
+            kind: DiagnosticKind::BadField,
+            column: field.column,
+            found: text::decoded(field.text).into_owned(),
+            expected: "a thickness that is not negative",
+        });
+    }
+    Ok(value)
+}
+
 fn thickness_card(card: &Card<'_>) -> Result<([f64; 4], f64), FieldError> {
     let mut thickness = [0.0; 4];
     for (i, value) in thickness.iter_mut().enumerate() {
-        *value = card.length_or_zero(FIVE_BY_16, i)?;
+        *value = not_negative(card, FIVE_BY_16, i)?.unwrap_or(0.0);
     }
     // A fifth field that is not a number costs the angle only.
     let angle = card.real_or_zero(FIVE_BY_16, 4).unwrap_or(0.0);
