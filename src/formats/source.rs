@@ -46,7 +46,7 @@ pub trait FileSource: Send + Sync {
     /// A regular file from its start, without holding all of it.
     fn stream(&self, path: &Path) -> io::Result<Box<dyn Read + '_>>;
 
-    /// The path under which a file exists, letter case of its name ignored if need be.
+    /// The path under which a file exists, letter case of its name and its folders ignored if need be.
     fn find(&self, path: &Path) -> Option<PathBuf>;
 }
 

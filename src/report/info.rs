@@ -157,10 +157,13 @@ impl FormingInfo {
                 .iter()
                 .filter(|extra| extra.thickness != [0.0; 4])
         };
+        // A corner without a thickness of its own has that of the section.
         let corners = with_thickness().flat_map(|extra| {
-            let shell = &model.shells[extra.shell as usize];
-            extra.thickness[..shell.corners().len()].iter().copied()
+            let n = model.shells[extra.shell as usize].corners().len();
+            let corners = model.shell_thickness(extra.shell).into_iter();
+            corners.flat_map(move |corners| corners.into_iter().take(n))
         });
+        let corners = corners.filter(|corner| *corner != 0.0);
         let plastic_strains = model
             .forming
             .stresses()

@@ -737,6 +737,19 @@ fn an_intersection_has_the_members_of_the_first_set_that_are_in_all() {
     }
 }
 
+/// A corner of 0 has the thickness of the section.
+#[test]
+fn the_range_of_thicknesses_is_that_of_the_shells() {
+    let section = "*PART\nsheet\n1,1\n*SECTION_SHELL\n1,2\n1.5\n";
+    let shell = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n*ELEMENT_SHELL_THICKNESS\n1,1,1,2,3,4\n0.9,0.,1.1,1.\n";
+    let range = |text: String| {
+        let info = shapematch::report::FormingInfo::of(&read_text(text));
+        (info.thickness, info.thickness_range)
+    };
+    assert_eq!(range(format!("{section}{shell}")), (1, Some([0.9, 1.5])));
+    assert_eq!(range(shell.to_owned()), (1, Some([0.9, 1.1])));
+}
+
 #[test]
 fn the_mark_that_ends_files_of_dos_is_no_card() {
     let deck = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n*PART\nsheet\n1\n*ELEMENT_SHELL\n1,1,1,2,3";
