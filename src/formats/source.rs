@@ -93,26 +93,31 @@ impl FileSource for Disk {
     }
 
     fn find(&self, path: &Path) -> Option<PathBuf> {
-        if path.is_file() {
-            return Some(path.to_path_buf());
-        }
-        let wanted = path.file_name()?.to_str()?.to_lowercase();
-        let folder = match path.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent,
-            _ => Path::new("."),
-        };
-        let mut matches: Vec<PathBuf> = std::fs::read_dir(folder)
-            .ok()?
-            .flatten()
-            .filter(|entry| {
-                let name = entry.file_name();
-                name.to_str().is_some_and(|n| n.to_lowercase() == wanted)
-            })
-            .map(|entry| entry.path())
-            .collect();
-        matches.sort();
-        matches.into_iter().find(|found| found.is_file())
+        of_any_case(path, Path::is_file)
     }
+}
+
+/// The file or folder of a path, or one whose name and folders differ in case alone; the path itself first.
+fn of_any_case(path: &Path, is_one: fn(&Path) -> bool) -> Option<PathBuf> {
+    if is_one(path) {
+        return Some(path.to_path_buf());
+    }
+    let wanted = path.file_name()?.to_str()?.to_lowercase();
+    let folder = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => of_any_case(parent, Path::is_dir)?,
+        _ => PathBuf::from("."),
+    };
+    let mut matches: Vec<PathBuf> = std::fs::read_dir(folder)
+        .ok()?
+        .flatten()
+        .filter(|entry| {
+            let name = entry.file_name();
+            name.to_str().is_some_and(|n| n.to_lowercase() == wanted)
+        })
+        .map(|entry| entry.path())
+        .collect();
+    matches.sort();
+    matches.into_iter().find(|found| is_one(found))
 }
 
 fn changed() -> io::Error {
@@ -410,6 +415,24 @@ mod tests {
         monitor.request_cancel();
         let ended = Disk.open(&path, NO_LIMIT, &monitor).unwrap_err();
         assert_eq!(ended.kind(), io::ErrorKind::Interrupted);
+    }
+
+    #[test]
+    fn files_and_their_folders_are_found_in_any_case() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::create_dir_all(at("Mesh/Floor")).unwrap();
+        std::fs::write(at("Mesh/Floor/Part.K"), b"").unwrap();
+        for name in [
+            "Mesh/Floor/Part.K",
+            "Mesh/Floor/part.k",
+            "mesh/FLOOR/part.k",
+        ] {
+            let found = Disk.find(&at(name)).expect(name);
+            assert!(same_file::is_same_file(found, at("Mesh/Floor/Part.K")).unwrap());
+        }
+        assert_eq!(Disk.find(&at("mesh/Floor")), None);
+        assert_eq!(Disk.find(&at("other/Part.K")), None);
     }
 
     #[test]
