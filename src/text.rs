@@ -265,6 +265,11 @@ impl Lengths {
         self.number(value) + self.suffix()
     }
 
+    /// What lengths stay below, after "within": `0.381 mm`, of less than a micrometre `0.001 mm`.
+    pub fn bound(self, value: f64) -> String {
+        self.of(value).trim_start_matches("< ").to_owned()
+    }
+
     /// Two lengths that are compared, with as many decimals as tell them apart: `15.04 mm` and `15.00 mm`.
     pub fn compared(self, lengths: [f64; 2]) -> [String; 2] {
         let usual = lengths.map(|value| self.of(value));
@@ -322,6 +327,8 @@ mod tests {
         let tiny = [5.5e-6, -0.0009, 0.001, 1e-9].map(|value| lengths.of(value));
         assert_eq!(tiny, ["< 0.001 mm", "< 0.001 mm", "0.0010 mm", "0 mm"]);
         assert_eq!(lengths.signed_of(0.0003), "< 0.001 mm");
+        let bounds = [0.0003, 0.3806].map(|value| lengths.bound(value));
+        assert_eq!(bounds, ["0.001 mm", "0.381 mm"]);
     }
 
     #[test]

@@ -118,7 +118,7 @@ impl Reason {
             } => format!(
                 "{} of the smaller part has a counterpart, 95 % of the overlap lies within {}, and {}",
                 percent(*overlap),
-                lengths.of(*p95),
+                lengths.bound(*p95),
                 if *rivals_sought {
                     "no other pose fits nearly as well"
                 } else {

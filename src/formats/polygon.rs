@@ -100,16 +100,17 @@ impl Polygons {
             let point = self.positions.get(corner as usize);
             point.is_some_and(is_place)
         };
-        let n = self.shells.len();
+        let which = match self.shells.len() {
+            0 => "a polygon before element 1".to_owned(),
+            n => format!("the polygon after element {n}"),
+        };
         if corners.len() < 3 {
-            self.warn(line, || {
-                format!("the polygon after element {n} has fewer than three corners")
-            });
+            self.warn(line, || format!("{which} has fewer than three corners"));
             return;
         }
         if !corners.iter().all(usable) {
             self.warn(line, || {
-                format!("the polygon after element {n} names a point that cannot be used")
+                format!("{which} names a point that cannot be used")
             });
             return;
         }
@@ -131,7 +132,7 @@ impl Polygons {
             let n_corners = corners.len();
             self.warn(line, || {
                 format!(
-                    "the polygon after element {n} is concave, has {n_corners} corners and is \
+                    "{which} is concave, has {n_corners} corners and is \
                      left out"
                 )
             });

@@ -353,8 +353,9 @@ pub(in crate::pipeline) fn bare_elements(run: &MapRun, stamped: &[PlacedPart<'_>
             let id = part.model.shells.get(shell)?.id;
             Some(format!("; the first is shell {id} of {}", part.file_name()))
         });
+        let verb = if bare.len() == 1 { "gets" } else { "get" };
         Some(format!(
-            "no {what} on {} with other values: the stamped elements there have {have_none}{}",
+            "{} {verb} other values but {what}: the stamped elements there have {have_none}{}",
             counted(bare.len(), "element"),
             first.unwrap_or_default()
         ))
@@ -366,8 +367,8 @@ pub(in crate::pipeline) fn bare_elements(run: &MapRun, stamped: &[PlacedPart<'_>
         states.is_some_and(|states| states.of(element).is_empty())
     };
     let lines = [
-        told("thickness", "none above 0", &no_thickness),
-        told("stresses and plastic strains", "none", &no_state),
+        told("no thickness", "none above 0", &no_thickness),
+        told("neither stresses nor plastic strains", "none", &no_state),
     ];
     lines.into_iter().flatten().collect()
 }

@@ -492,7 +492,11 @@ fn master(record: &CarRecord, crash: &str, included: &[String]) -> String {
     let mut text = format!("*KEYWORD\n$ forming results mapped onto {crash}\n");
     for row in &record.rows {
         let [file, part, state, ..] = row.cells();
-        text.push_str(&format!("$ {file} on part {part}: {state}\n"));
+        let onto = match part.as_str() {
+            "" => String::new(),
+            part => format!(" on part {part}"),
+        };
+        text.push_str(&format!("$ {file}{onto}: {state}\n"));
     }
     text.push_str(&format!(
         "$ Take the elements that the included files define out of the crash deck.\n$ {}\n",
@@ -563,6 +567,7 @@ mod tests {
         for name in &names {
             assert!(joined.contains(&format!("*INCLUDE\n{name}\n")), "{text}");
         }
+        assert!(text.contains("\n$ empty.dynain: not mapped\n"), "{text}");
         let lines = text.lines().filter(|line| !line.starts_with('$'));
         assert_eq!(lines.map(str::len).max(), Some(80));
     }
