@@ -162,6 +162,8 @@ kinds! {
     MisleadingName, Warning, "name of another format";
     /// A word after `*` that LS-DYNA does not know.
     UnknownKeyword, Warning, "unknown keyword";
+    /// Units in a comment that are not those of the materials.
+    OtherUnits, Warning, "contradicting units";
     /// A deck without shells and solids.
     NoElements, Warning, "no elements";
     /// A deck that begins with `*KEYWORD` ends among nodes, elements or results, without `*END`.

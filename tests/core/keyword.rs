@@ -768,6 +768,26 @@ fn the_mark_that_ends_files_of_dos_is_no_card() {
 }
 
 #[test]
+fn units_in_a_comment_that_are_not_those_of_the_materials_are_told() {
+    let told = |comment: &str| {
+        let steel = "*MAT_024\n1,7.85E-9,2.1E5,0.3\n";
+        let model = read_text(format!("*KEYWORD\n$ {comment}\n{steel}*END\n"));
+        let found = model.diagnostics.iter();
+        let mut found = found.filter(|d| d.kind == DiagnosticKind::OtherUnits);
+        found.next().map(|d| d.message.clone())
+    };
+    for comment in ["units: ton, mm, s", "units mm", "no word of it"] {
+        assert_eq!(told(comment), None, "{comment}");
+    }
+    for (comment, label) in [("units: kg, mm, ms", "kg-mm-ms"), ("units m", "m")] {
+        let message = told(comment).unwrap();
+        let both =
+            format!("names {label}, density and modulus of the materials are those of ton-mm-s");
+        assert!(message.contains(&both), "{message}");
+    }
+}
+
+#[test]
 fn materials_of_an_include_are_in_the_units_of_the_deck_around_it() {
     // Steel in kg-mm-ms with a comment that says so, in kg-m-s, and in ton-mm-s.
     let files = [

@@ -1,6 +1,7 @@
 //! The end of reading a deck: nodes are numbered, motions are carried out, thickness is handed out.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
@@ -58,6 +59,7 @@ pub(super) fn finish(
     tell_flat_shells(&assembly, &mut model);
     monitor.check()?;
     tell_no_elements(&mut assembly, &model);
+    tell_other_units(&mut assembly, &model);
     model.raw_titles = std::mem::take(&mut assembly.raw_titles);
     let mut found = assembly.found;
     found.append(std::mem::take(&mut model.diagnostics));
@@ -130,12 +132,22 @@ fn tell_no_elements(assembly: &mut Assembly, model: &Model) {
         0 => "the deck has neither nodes nor shells nor solids".to_owned(),
         n => format!("the deck has {n} nodes and neither shells nor solids"),
     };
-    let position = model.files.first().map(|file| {
-        let path: std::sync::Arc<std::path::Path> = std::sync::Arc::from(file.path.as_path());
-        Position::file(&path)
-    });
-    let diagnostic = with_position(Diagnostic::new(kind, message), position);
+    let diagnostic = with_position(Diagnostic::new(kind, message), whole_file(model));
     assembly.found.push(diagnostic);
+}
+
+fn tell_other_units(assembly: &mut Assembly, model: &Model) {
+    if let Some(message) = assembly.unit_clues.contradiction() {
+        let diagnostic = Diagnostic::new(DiagnosticKind::OtherUnits, message);
+        let diagnostic = with_position(diagnostic, whole_file(model));
+        assembly.found.push(diagnostic);
+    }
+}
+
+/// The file that was asked for.
+fn whole_file(model: &Model) -> Option<Position> {
+    let file = model.files.first()?;
+    Some(Position::file(&Arc::from(file.path.as_path())))
 }
 
 pub(super) fn with_position(diagnostic: Diagnostic, position: Option<Position>) -> Diagnostic {

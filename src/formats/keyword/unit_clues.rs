@@ -66,4 +66,21 @@ impl UnitClues {
     pub(super) fn units(&self) -> Option<KnownUnits> {
         self.stated.or_else(|| units::of_materials(&self.materials))
     }
+
+    /// The units that a comment names and those of the materials, in words, where they are not the same.
+    pub(super) fn contradiction(&self) -> Option<String> {
+        let stated = self.stated?;
+        let found = units::of_materials(&self.materials)?;
+        let is_same = match stated.units.system {
+            Some(_) => stated.units == found.units,
+            None => stated.units.length == found.units.length,
+        };
+        (!is_same).then(|| {
+            format!(
+                "a title or comment names {}, density and modulus of the materials are those of {}; the first is believed",
+                stated.units.label(),
+                found.units.label()
+            )
+        })
+    }
 }
