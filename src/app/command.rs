@@ -53,19 +53,24 @@ pub enum Command {
 }
 
 impl Command {
-    /// True if it changes what a move by keys stands on, or runs for long: such a move ends before it.
+    /// True if it changes what a move by keys stands on, or runs for long: such a move ends before it. What only
+    /// points at something or comes from the program itself ends none.
     pub(super) fn ends_move(&self) -> bool {
-        matches!(
-            self,
-            Self::File(_)
-                | Self::Project(_)
-                | Self::Part(_)
-                | Self::Reduce(_)
-                | Self::Match(_)
-                | Self::Map(_)
-                | Self::Pair(_)
-                | Self::History(_)
-        )
+        match self {
+            Self::File(command) => !matches!(command, FileCommand::ChangedOnDisk(_)),
+            Self::Project(command) => !matches!(
+                command,
+                ProjectCommand::Autosave
+                    | ProjectCommand::Written(..)
+                    | ProjectCommand::NotWritten
+                    | ProjectCommand::NotifyRecovered(_)
+            ),
+            Self::Part(command) => !matches!(command, PartCommand::Hover(_)),
+            Self::Reduce(_) | Self::Match(_) | Self::Map(_) | Self::Pair(_) | Self::History(_) => {
+                true
+            }
+            _ => false,
+        }
     }
 }
 

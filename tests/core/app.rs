@@ -816,6 +816,36 @@ fn a_move_by_keys_ends_before_what_it_stands_on_changes() {
     assert!(!window.state.jobs.is_busy());
 }
 
+/// A part that comes under the pointer, and what the program does by itself, are not what the move stands on.
+#[test]
+fn a_move_by_keys_goes_on_over_parts_and_news() {
+    for action in [Action::MoveTool, Action::RotateTool] {
+        let mut window = Window::with_both();
+        window.act(action);
+        let axis = ModalInput::Axis {
+            axis: Axis::X,
+            is_plane: false,
+        };
+        window.apply(MoveCommand::Input(axis));
+        window.apply(MoveCommand::Input(ModalInput::Character('5')));
+        let moved = window.pose();
+        assert_ne!(moved, Similarity::identity());
+        let part = PartRef {
+            role: Role::Crash,
+            id: 12,
+        };
+        window.apply(PartCommand::Hover(Some(part)));
+        window.apply(PartCommand::Hover(None));
+        window.apply(ProjectCommand::Autosave);
+        window.apply(ProjectCommand::NotWritten);
+        window.apply(FileCommand::ChangedOnDisk(std::collections::BTreeSet::new()));
+        assert!(window.state.moving.tool.is_some(), "{action:?}");
+        window.apply(MoveCommand::Input(ModalInput::Accept));
+        assert_eq!(window.pose(), moved, "{action:?}");
+        assert!(window.state.moving.tool.is_none());
+    }
+}
+
 #[test]
 fn turning_over_twice_comes_back() {
     for action in [Action::FlipX, Action::FlipY, Action::FlipZ] {

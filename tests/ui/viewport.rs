@@ -9,7 +9,7 @@ use egui::{Event, MouseWheelUnit, PointerButton, Pos2, Rect, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use shapematch::app::{
-    AppState, ColorBy, Command, Effect, FileCommand, FreeWindow, MoveCommand, PartCommand,
+    Action, AppState, ColorBy, Command, Effect, FileCommand, FreeWindow, MoveCommand, PartCommand,
     PictureChoice, Settings, ViewCommand,
 };
 use shapematch::formats::Model;
@@ -377,6 +377,28 @@ fn hovering_names_the_part_and_says_nothing_twice() {
     assert_eq!(harness.state().seen.iter().filter(hovers).count(), 1);
     // Panics unless the windows come to rest: an idle window draws nothing.
     harness.run();
+}
+
+/// A part under the pointer is told to nobody while it moves by keys: the move would end.
+#[test]
+fn a_move_by_keys_hovers_nothing() {
+    for action in [Action::MoveTool, Action::RotateTool] {
+        let mut desk = Desk::with_sheets(None);
+        let begin = action.command(&desk.state).expect("can move");
+        desk.apply(begin);
+        let mut harness = harness(desk);
+        for role in Role::ALL {
+            let center = area(&harness, role).center();
+            for step in 0..4 {
+                harness.event(Event::PointerMoved(center + vec2(step as f32, 0.0)));
+                harness.step();
+            }
+        }
+        let desk = harness.state();
+        let hovers = |c: &Command| matches!(c, Command::Part(PartCommand::Hover(_)));
+        assert!(!desk.seen.iter().any(hovers), "{action:?}");
+        assert!(desk.state.moving.tool.is_some(), "{action:?}");
+    }
 }
 
 #[test]

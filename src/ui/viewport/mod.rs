@@ -337,9 +337,11 @@ impl Viewports {
         let (state, role) = (frame.state, frame.view.window);
         let window = self.windows.get_mut(role);
         window.tools.update(ui, frame, commands);
-        let is_busy = window.navigator.drag().is_some() || window.tools.takes_left();
+        let is_busy = window.navigator.drag().is_some()
+            || window.tools.takes_left()
+            || state.moving.tool.is_some();
         let hit = window.pointing.update(ui, frame, is_busy, commands);
-        let pick = if is_busy || state.moving.tool.is_some() {
+        let pick = if is_busy {
             None
         } else {
             picking::update(frame, commands)
