@@ -401,18 +401,66 @@ fn a_move_by_keys_hovers_nothing() {
     }
 }
 
-#[test]
-fn the_gizmo_moves_the_part_in_one_step() {
+/// Two windows with the gizmo, and its dot, which lies at the centre of the part.
+fn with_gizmo() -> (Harness<'static, Desk>, Pos2) {
     let mut desk = Desk::with_sheets(None);
     desk.apply(MoveCommand::ToggleGizmo.into());
-    let mut harness = harness(desk);
-    let before = *harness.state().state.document.crash_from_stamped();
+    let harness = harness(desk);
     let camera = harness.state().camera(Role::Stamped);
-    // The dot lies at the centre of the part.
     let area = area(&harness, Role::Stamped);
     let pivot = harness.state().state.document.stamped_center().unwrap();
     let seen = camera.project(&pivot, screen_of(area)).unwrap();
     let dot = area.min + vec2(seen.x as f32, seen.y as f32);
+    (harness, dot)
+}
+
+/// A slow frame takes the press and the way on together, or even the way to the handle: what was pressed counts.
+#[test]
+fn a_quick_drag_on_a_handle_moves_the_part_and_not_the_camera() {
+    for is_there_before in [true, false] {
+        let (mut harness, dot) = with_gizmo();
+        let camera = harness.state().camera(Role::Stamped);
+        let screen = screen_of(area(&harness, Role::Stamped));
+        let pivot = harness.state().state.document.stamped_center().unwrap();
+        let button = |pos, pressed| Event::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: egui::Modifiers::NONE,
+        };
+        let way = vec2(18.0, 24.0);
+        let mut events = vec![Event::PointerMoved(dot)];
+        if is_there_before {
+            harness.input_mut().events.append(&mut events);
+            harness.step();
+        }
+        events.extend([button(dot, true), Event::PointerMoved(dot + way)]);
+        harness.input_mut().events.append(&mut events);
+        harness.step();
+        // Let go in the frame of the last piece of the way.
+        events.push(Event::PointerMoved(dot + 2.0 * way));
+        events.push(button(dot + 2.0 * way, false));
+        events.push(Event::PointerMoved(dot + 5.0 * way));
+        harness.input_mut().events.append(&mut events);
+        harness.run_steps(3);
+        let desk = harness.state();
+        assert_eq!(desk.camera(Role::Stamped), camera, "{is_there_before}");
+        let name = desk.state.history.undo_name().unwrap_or_default();
+        assert!(name.ends_with("in the plane of the screen"), "{name}");
+        let seen = camera.project(&pivot, screen).unwrap();
+        let at = [seen.x + 36.0, seen.y + 48.0];
+        let expected = camera.unproject(at, screen, &pivot) - pivot;
+        let moved = desk.state.document.crash_from_stamped().translation;
+        let error = (moved - expected).norm() / expected.norm();
+        assert!(error < 1e-3, "{moved} for {expected}");
+    }
+}
+
+#[test]
+fn the_gizmo_moves_the_part_in_one_step() {
+    let (mut harness, dot) = with_gizmo();
+    let before = *harness.state().state.document.crash_from_stamped();
+    let camera = harness.state().camera(Role::Stamped);
     let n_steps = harness.state().state.history.n_done();
     drag(
         &mut harness,

@@ -296,7 +296,7 @@ impl Viewports {
     ) -> Camera {
         let window = self.windows.get_mut(frame.view.window);
         window.has_picture = !frame.picture.is_empty();
-        let is_left_taken = window.tools.takes_left();
+        let is_left_taken = window.tools.takes_left_now(ui, frame);
         match window.navigator.update(ui, frame, is_left_taken) {
             Some(camera) => {
                 window.camera.jump(camera);

@@ -1,10 +1,10 @@
 //! Moving the stamped part with the pointer: the gizmo, and moves begun by keys.
 
-use egui::{Key, PointerButton, Pos2, Ui};
+use egui::{Event, InputState, Key, Modifiers, PointerButton, Pos2, Ui};
 
 use super::frame::FrameContext;
 use super::navigation::{angle_between, pixel_of, pos_of, screen_of};
-use crate::app::gizmo::{Gizmo, GizmoDelta, GizmoView, PointerInput};
+use crate::app::gizmo::{Gizmo, GizmoDelta, GizmoView, Layout, PointerInput};
 use crate::app::{AppState, Command, GestureId, ModalInput, MoveCommand, MoveFrame, MoveTool};
 use crate::geometry::Point3;
 use crate::role::Role;
@@ -38,6 +38,30 @@ fn has_stamped(frame: &FrameContext<'_>) -> bool {
     window == frame.view.window && frame.state.document.part(Role::Stamped).is_some()
 }
 
+/// Where the left button went down on this window in this frame.
+fn place_of_press(ui: &Ui, frame: &FrameContext<'_>) -> Option<[f64; 2]> {
+    let is_over = frame.response.contains_pointer();
+    let place = ui.input(|i| {
+        let is_pressed = i.pointer.button_pressed(PointerButton::Primary);
+        i.pointer.press_origin().filter(|_| is_pressed)
+    });
+    let place = place.filter(|at| is_over && frame.rect().contains(*at))?;
+    Some(pixel_of(frame.rect(), place))
+}
+
+/// Where the left button was let go in this frame, and what was held then.
+fn release(input: &InputState) -> Option<(Pos2, Modifiers)> {
+    input.events.iter().find_map(|event| match event {
+        Event::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed: false,
+            modifiers,
+        } => Some((*pos, *modifiers)),
+        _ => None,
+    })
+}
+
 /// Pivot and axes now, with the camera of this frame.
 fn move_frame(frame: &FrameContext<'_>) -> Option<MoveFrame> {
     let pivot = frame.state.document.stamped_center()?;
@@ -51,6 +75,19 @@ impl Tools {
     /// True while a handle is held or under the pointer: the left button is not the camera's.
     pub fn takes_left(&self) -> bool {
         self.has_gizmo && self.gizmo.active().is_some()
+    }
+
+    /// Like [`Self::takes_left`], before this frame's pointer is taken: a slow frame may hold the way to a handle,
+    /// the press on it and the way on.
+    pub fn takes_left_now(&self, ui: &Ui, frame: &FrameContext<'_>) -> bool {
+        let pressed = place_of_press(ui, frame).filter(|_| !self.gizmo.is_dragging());
+        match (pressed, move_frame(frame)) {
+            (Some(at), Some(axes)) => {
+                let layout = Layout::new(&gizmo_view(frame, &axes));
+                self.has_gizmo && layout.is_some_and(|layout| layout.hit(at).is_some())
+            }
+            _ => self.takes_left(),
+        }
     }
 
     /// True while the part is moved by hand.
@@ -80,35 +117,58 @@ impl Tools {
             return;
         };
         let view = gizmo_view(frame, &axes);
+        for pointer in self.pointer_inputs(ui, frame) {
+            let command = match self.gizmo.interact(&view, &pointer) {
+                Some(GizmoDelta::Drag {
+                    gesture,
+                    delta,
+                    name,
+                }) => MoveCommand::Drag {
+                    gesture,
+                    delta,
+                    name,
+                },
+                Some(GizmoDelta::End) => MoveCommand::EndDrag,
+                Some(GizmoDelta::Abandon(gesture)) => MoveCommand::AbandonDrag(gesture),
+                None => continue,
+            };
+            commands.push(command.into());
+        }
+    }
+
+    /// What the pointer did in this frame, one after the other: it went down, came here, was let go. In a slow frame
+    /// these are different places.
+    fn pointer_inputs(&self, ui: &Ui, frame: &FrameContext<'_>) -> Vec<PointerInput> {
         let rect = frame.rect();
         let is_over = frame.response.contains_pointer() || self.gizmo.is_dragging();
-        let pointer = ui.input(|i| PointerInput {
-            position: i
-                .pointer
-                .latest_pos()
-                .filter(|_| is_over)
-                .map(|p| pixel_of(rect, p)),
-            is_pressed: i.pointer.button_pressed(PointerButton::Primary) && is_over,
-            is_down: i.pointer.primary_down(),
-            shift: i.modifiers.shift,
-            ctrl: i.modifiers.command,
-            is_abandoned: i.key_pressed(Key::Escape),
+        let (now, released) = ui.input(|i| {
+            let place = i.pointer.latest_pos().filter(|_| is_over);
+            let now = PointerInput {
+                position: place.map(|at| pixel_of(rect, at)),
+                is_pressed: false,
+                is_down: i.pointer.primary_down(),
+                shift: i.modifiers.shift,
+                ctrl: i.modifiers.command,
+                is_abandoned: i.key_pressed(Key::Escape),
+            };
+            (now, release(i))
         });
-        let command = match self.gizmo.interact(&view, &pointer) {
-            Some(GizmoDelta::Drag {
-                gesture,
-                delta,
-                name,
-            }) => MoveCommand::Drag {
-                gesture,
-                delta,
-                name,
-            },
-            Some(GizmoDelta::End) => MoveCommand::EndDrag,
-            Some(GizmoDelta::Abandon(gesture)) => MoveCommand::AbandonDrag(gesture),
-            None => return,
+        let before = if self.gizmo.is_dragging() {
+            released.map(|(at, held)| PointerInput {
+                position: Some(pixel_of(rect, at)),
+                is_down: true,
+                shift: held.shift,
+                ctrl: held.command,
+                ..now
+            })
+        } else {
+            place_of_press(ui, frame).map(|at| PointerInput {
+                position: Some(at),
+                is_pressed: true,
+                ..now
+            })
         };
-        commands.push(command.into());
+        before.into_iter().chain([now]).collect()
     }
 
     /// Draws the gizmo and says what its active handle does.

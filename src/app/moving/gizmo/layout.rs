@@ -161,7 +161,7 @@ impl Layout {
     }
 
     /// The handle at a pixel: the dot, then a square that holds it, then the nearest line.
-    pub(super) fn hit(&self, at: [f64; 2]) -> Option<Handle> {
+    pub fn hit(&self, at: [f64; 2]) -> Option<Handle> {
         if distance(at, self.center) <= DOT + HIT_SLOP / 2.0 {
             return Some(Handle::Dot);
         }
