@@ -1,6 +1,8 @@
 //! A mapping says at which pose it was made, and none begins at a pose that nobody chose.
 
-use shapematch::app::{Action, Axis, AxisFrame, MapCommand, MatchCommand, MoveCommand};
+use shapematch::app::{
+    Action, Axis, AxisFrame, FileCommand, MapCommand, MatchCommand, MoveCommand, StampedState,
+};
 use shapematch::assess::Verdict;
 use shapematch::pipeline::map::{CheckRecord, PoseOrigin};
 use shapematch::role::Role;
@@ -90,4 +92,33 @@ fn a_mapping_tells_the_match_it_stands_on_and_how_far_it_was_moved_from_there() 
         verdict: Verdict::Good,
     };
     assert_eq!(window.state.document.pose_origin(), good);
+}
+
+#[test]
+fn after_a_part_has_changed_the_pose_is_that_of_the_match_before() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = loaded(folder.path());
+    window.apply(MatchCommand::Run);
+    for (role, changed) in [
+        (Role::Crash, "the crash part"),
+        (Role::Stamped, "both parts"),
+    ] {
+        window.apply(FileCommand::Reload(role));
+        window.act(Action::MapOrCancel);
+        let (check, warnings) = pose_of(&window);
+        let found = format!("from the match before {changed} changed (GOOD)");
+        assert_eq!(check.found, found);
+        assert_eq!(check.is_met, Some(false));
+        let warning = format!("the pose of stamped.dynain: {found}");
+        assert!(warnings.contains(&warning), "{warnings:?}");
+        let state = &window.state.stamped_rows()[0].state;
+        assert_eq!(*state, StampedState::Outdated(found));
+    }
+    // Put back where its file has it, it stands for no match any more.
+    window.apply(MoveCommand::Reset);
+    assert_eq!(window.state.document.pose_origin(), PoseOrigin::AsLoaded);
+    window.act(Action::Undo);
+    window.apply(MatchCommand::Run);
+    let origin = window.state.document.pose_origin();
+    assert!(matches!(origin, PoseOrigin::Match { .. }), "{origin:?}");
 }

@@ -7,6 +7,7 @@ use shapematch::app::*;
 use shapematch::geometry::Similarity;
 use shapematch::jobs::{Located, PipelineRunner, ProjectFile, ProjectRequest, Runner as _};
 use shapematch::monitor::Monitor;
+use shapematch::pipeline::map::{ChangedParts, PoseOrigin};
 use shapematch::pipeline::match_parts::MatchRecipe;
 use shapematch::pipeline::project::{PartEntry, Project};
 use shapematch::registration::{
@@ -224,6 +225,16 @@ fn a_file_that_changed_keeps_the_pose_and_ages_the_result() {
     );
     assert!(again.state.document.result.is_some());
     assert!(again.state.document.current_result().is_none());
+    let origin = again.state.document.pose_origin();
+    let is_told = matches!(
+        origin,
+        PoseOrigin::Outdated {
+            changed: ChangedParts::Crash,
+            distance: None,
+            ..
+        }
+    );
+    assert!(is_told, "{origin:?}");
     let toast = again.state.log.notices.toasts().next().unwrap();
     assert!(toast.text.contains("has changed since"), "{}", toast.text);
 }

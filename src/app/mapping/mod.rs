@@ -25,14 +25,16 @@ use std::sync::Arc;
 
 use self::further::{set_pose, set_units};
 use super::work::Work;
-use super::{AppState, ColorBy, Document, Effect, Reason, Shared};
+use super::{AppState, ColorBy, Document, Effect, MatchResult, Reason, Shared};
 use crate::geometry::Similarity;
 use crate::jobs::{CompareMappingInput, JobKey, JobKind, MapInput, Stamp};
 use crate::pipeline::forming_values::{FormingValue, has_forming_value, nominal_thickness};
 use crate::pipeline::load::LoadedPart;
+use crate::pipeline::map::{
+    ChangedParts, ElementLists, MapRecipe, MapRecord, MapRun, OtherResult, PoseOrigin,
+};
 pub use crate::pipeline::map::{DoubtfulElement, FurtherPose, UnmappedElement};
-use crate::pipeline::map::{ElementLists, MapRecipe, MapRecord, MapRun, OtherResult, PoseOrigin};
-use crate::role::Role;
+use crate::role::{PerRole, Role};
 
 /// What undo covers of the mapping.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -133,30 +135,49 @@ impl Document {
 
     /// Where the pose of the stamped part comes from.
     pub fn pose_origin(&self) -> PoseOrigin {
-        let result = self.result.as_ref();
-        let of_these = result.filter(|result| result.stamp.parts == self.stamp().parts);
-        let (Some(result), Some(part)) = (of_these, self.part(Role::Stamped)) else {
-            let is_moved = *self.crash_from_stamped() != Similarity::identity();
+        let is_moved = *self.crash_from_stamped() != Similarity::identity();
+        let (Some(result), Some(part)) = (&self.result, self.part(Role::Stamped)) else {
             return if is_moved {
                 PoseOrigin::ByHand
             } else {
                 PoseOrigin::AsLoaded
             };
         };
-        let verdict = result.run.assessment.verdict;
         let bounds = part.bounds();
         let found = result.run.pose(result.alternative);
         let distance = found.map_or(0.0, |found| {
             found.max_displacement(self.crash_from_stamped(), &bounds.corners())
         });
         // Moved there and back is not moved.
-        if result.stamp != self.stamp() && distance > UNMOVED * bounds.diagonal() {
+        let is_elsewhere = result.stamp != self.stamp() && distance > UNMOVED * bounds.diagonal();
+        if let Some(changed) = self.changed_after(result) {
+            return if is_elsewhere && !is_moved {
+                PoseOrigin::AsLoaded
+            } else {
+                PoseOrigin::Outdated {
+                    changed,
+                    distance: is_elsewhere.then_some(distance),
+                    verdict: result.verdict(),
+                }
+            };
+        }
+        let verdict = result.run.assessment.verdict;
+        if is_elsewhere {
             PoseOrigin::Moved { distance, verdict }
         } else if result.alternative.is_some() {
             PoseOrigin::Alternative
         } else {
             PoseOrigin::Match { verdict }
         }
+    }
+
+    /// The parts that are others now than those a match was made with.
+    fn changed_after(&self, result: &MatchResult) -> Option<ChangedParts> {
+        let (then, now) = (&result.stamp.parts, self.stamp().parts);
+        ChangedParts::of(PerRole {
+            crash: then.crash == now.crash,
+            stamped: then.stamped == now.stamped,
+        })
     }
 
     /// `Ok` if there is something to map.

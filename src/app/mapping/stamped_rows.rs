@@ -8,6 +8,7 @@ use crate::app::names::told_apart;
 use crate::app::{AppState, Part, UnitHint, facts};
 use crate::assess::Verdict;
 use crate::jobs::JobKey;
+use crate::pipeline::map::PoseOrigin;
 use crate::role::PerRole;
 use crate::units::Units;
 
@@ -53,6 +54,8 @@ pub enum StampedState {
     Alternative(Verdict, usize),
     /// It lies as the first one.
     AsFirst,
+    /// The first one lies where a match had put it or was moved from there, and a part has changed since; in words.
+    Outdated(String),
     /// The first one lies where it was put by hand.
     ByHand,
     /// The first one lies where its file has it.
@@ -128,8 +131,13 @@ impl AppState {
                 }
                 Some(index) => StampedState::Alternative(result.verdict(), index + 2),
             },
-            _ if self.document.has_pose() => StampedState::ByHand,
-            _ => StampedState::AsLoaded,
+            None => match self.document.pose_origin() {
+                origin @ PoseOrigin::Outdated { .. } => {
+                    StampedState::Outdated(origin.words(self.lengths()))
+                }
+                _ if self.document.has_pose() => StampedState::ByHand,
+                _ => StampedState::AsLoaded,
+            },
         }
     }
 

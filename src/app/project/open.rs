@@ -151,12 +151,14 @@ impl AppState {
             opened.is_some() == entry.is_some() && opened.as_ref().is_none_or(|p| !p.is_changed)
         };
         let PerRole { crash, stamped } = project.parts.as_ref().map(Option::as_ref);
-        let is_same = is_complete(&parts.crash, crash) && is_complete(&parts.stamped, stamped);
-        // Poses of further files stand for the crash part as it was.
-        let is_crash_same = is_complete(&parts.crash, crash);
+        let is_same = PerRole {
+            crash: is_complete(&parts.crash, crash),
+            stamped: is_complete(&parts.stamped, stamped),
+        };
         document.mapping.further = self.further_of(project, further, |placing| {
             let crash = document.part(Role::Crash).map(|part| part.revision);
-            let is_current = placing.is_current && is_crash_same;
+            // Poses of further files stand for the crash part as it was.
+            let is_current = placing.is_current && is_same.crash;
             crash.filter(|_| is_current).unwrap_or_default()
         });
         document.result = project.result.clone().map(|entry| {
@@ -313,11 +315,21 @@ fn part_of(opened: &OpenedPart, entry: &PartEntry, revision: u64) -> Part {
     part
 }
 
-/// The inputs a stored result stands for: the present ones only if nothing differs.
-fn result_stamp(entry: &ResultEntry, now: Stamp, is_same: bool) -> Stamp {
-    match (is_same, entry.is_current) {
-        (true, true) => now,
-        (true, false) => Stamp { pose: 0, ..now },
-        (false, _) => Stamp::default(),
+/// The inputs a stored result stands for: the present ones where nothing differs.
+fn result_stamp(entry: &ResultEntry, now: Stamp, is_same: PerRole<bool>) -> Stamp {
+    let part = |role| {
+        if *is_same.get(role) {
+            *now.parts.get(role)
+        } else {
+            0
+        }
+    };
+    let is_current = entry.is_current && is_same.crash && is_same.stamped;
+    Stamp {
+        parts: PerRole {
+            crash: part(Role::Crash),
+            stamped: part(Role::Stamped),
+        },
+        pose: if is_current { now.pose } else { 0 },
     }
 }

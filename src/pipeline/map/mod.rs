@@ -32,7 +32,7 @@ pub use default_thickness::DefaultThickness;
 pub use head::deck_comments;
 pub use lists::{DoubtfulElement, ElementLists, GiverShare, UnmappedElement, element_lists};
 pub use old_states::{NewStates, car_copies, mapped_by_solver};
-pub use origin::PoseOrigin;
+pub use origin::{ChangedParts, PoseOrigin};
 pub use output::{MapFile, MapFiles, MapOutput, WriteKind, elements_path, write_mapping};
 pub use place::{FurtherPose, place, placing_recipe, pose_warning};
 pub use probe::{ProbeRecord, ProbedValue, probe_records};

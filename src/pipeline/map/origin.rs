@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::place::pose_warning;
 use crate::assess::Verdict;
+use crate::role::{PerRole, Role};
 use crate::text::Lengths;
 
 /// Where the pose of a stamped part comes from.
@@ -27,10 +28,52 @@ pub enum PoseOrigin {
         /// What the match said of its own pose.
         verdict: Verdict,
     },
+    /// A match found it, for parts of which one has changed since.
+    Outdated {
+        /// What has changed.
+        changed: ChangedParts,
+        /// How far the part was moved by hand from where the match had put it, if it was.
+        distance: Option<f64>,
+        /// What the match said of the parts as they were.
+        verdict: Verdict,
+    },
     /// It was put there by hand, without a match.
     ByHand,
     /// It lies where its file has it.
     AsLoaded,
+}
+
+/// Which parts were read or chosen anew after a match.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ChangedParts {
+    /// The crash part alone.
+    Crash,
+    /// The stamped part alone.
+    Stamped,
+    /// Both parts.
+    Both,
+}
+
+impl ChangedParts {
+    /// Those that are not the same any more; `None` if all are.
+    pub fn of(is_same: PerRole<bool>) -> Option<Self> {
+        match (is_same.crash, is_same.stamped) {
+            (true, true) => None,
+            (false, true) => Some(Self::Crash),
+            (true, false) => Some(Self::Stamped),
+            (false, false) => Some(Self::Both),
+        }
+    }
+
+    /// "the crash part".
+    fn words(self) -> String {
+        match self {
+            Self::Crash => format!("the {} part", Role::Crash.word()),
+            Self::Stamped => format!("the {} part", Role::Stamped.word()),
+            Self::Both => "both parts".to_owned(),
+        }
+    }
 }
 
 impl PoseOrigin {
@@ -39,7 +82,11 @@ impl PoseOrigin {
         match self {
             Self::Given => None,
             Self::Match { verdict } => Some(*verdict == Verdict::Good),
-            Self::Alternative | Self::Moved { .. } | Self::ByHand | Self::AsLoaded => Some(false),
+            Self::Alternative
+            | Self::Moved { .. }
+            | Self::Outdated { .. }
+            | Self::ByHand
+            | Self::AsLoaded => Some(false),
         }
     }
 
@@ -54,6 +101,20 @@ impl PoseOrigin {
                 lengths.of(*distance),
                 verdict.label()
             ),
+            Self::Outdated {
+                changed,
+                distance,
+                verdict,
+            } => {
+                let moved = distance.map_or_else(String::new, |distance| {
+                    format!("moved by hand, {} ", lengths.of(distance))
+                });
+                format!(
+                    "{moved}from the match before {} changed ({})",
+                    changed.words(),
+                    verdict.label()
+                )
+            }
             Self::ByHand => "placed by hand, no match".to_owned(),
             Self::AsLoaded => "as loaded, no match".to_owned(),
         }
@@ -85,9 +146,11 @@ impl PoseOrigin {
         match self {
             Self::Given => None,
             Self::Match { verdict } => pose_warning(*verdict, file),
-            Self::Alternative | Self::Moved { .. } | Self::ByHand | Self::AsLoaded => {
-                Some(format!("the pose of {file}: {}", self.words(lengths)))
-            }
+            Self::Alternative
+            | Self::Moved { .. }
+            | Self::Outdated { .. }
+            | Self::ByHand
+            | Self::AsLoaded => Some(format!("the pose of {file}: {}", self.words(lengths))),
         }
     }
 
@@ -103,11 +166,12 @@ impl PoseOrigin {
             } => 2,
             Self::Alternative => 3,
             Self::Moved { .. } => 4,
+            Self::Outdated { .. } => 5,
             Self::Match {
                 verdict: Verdict::Poor,
-            } => 5,
-            Self::ByHand => 6,
-            Self::AsLoaded => 7,
+            } => 6,
+            Self::ByHand => 7,
+            Self::AsLoaded => 8,
         }
     }
 }
@@ -151,5 +215,32 @@ mod tests {
         let warning = moved.warning("a.k", lengths);
         assert_eq!(warning, Some(format!("the pose of a.k: {words}")));
         assert_eq!(of(Verdict::Good).warning("a.k", lengths), None);
+    }
+
+    #[test]
+    fn a_match_of_parts_that_have_changed_stands_for_no_pose() {
+        let of = |crash, stamped, distance| {
+            let changed = ChangedParts::of(PerRole { crash, stamped })?;
+            let verdict = Verdict::Good;
+            Some(PoseOrigin::Outdated {
+                changed,
+                distance,
+                verdict,
+            })
+        };
+        assert_eq!(of(true, true, None), None);
+        let lengths = Lengths::new(Some(LengthUnit::Millimeter));
+        let words = |origin: Option<PoseOrigin>| origin.map(|origin| origin.words(lengths));
+        assert_eq!(
+            words(of(false, true, None)).as_deref(),
+            Some("from the match before the crash part changed (GOOD)")
+        );
+        assert_eq!(
+            words(of(false, false, Some(5.0))).as_deref(),
+            Some("moved by hand, 5.00 mm from the match before both parts changed (GOOD)")
+        );
+        let origin = of(true, false, None).expect("one has changed");
+        assert_eq!(origin.is_good(), Some(false));
+        assert!(origin.warning("a.k", lengths).is_some());
     }
 }

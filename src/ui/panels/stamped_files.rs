@@ -157,6 +157,7 @@ fn state_ui(ui: &mut Ui, state: &StampedState) {
             )
         }
         StampedState::AsFirst => return,
+        StampedState::Outdated(words) => ("older match", palette.check, Some(sentence(words))),
         StampedState::ByHand => (
             "by hand",
             palette.secondary,
