@@ -206,6 +206,25 @@ fn the_section_has_a_handle_and_a_drawing_and_both_move_the_plane() {
     assert_eq!(starts_with(&harness, "Outlines in the section plane"), 0);
 }
 
+/// While the outlines are still to come, nothing is said of where the plane lies.
+#[test]
+fn a_plane_that_is_still_cut_is_not_said_to_meet_nothing() {
+    let mut harness = Harness::builder()
+        .with_size(vec2(1000.0, 720.0))
+        .build_ui_state(show_with_drawing, with_map());
+    settle(&mut harness);
+    for action in [Action::ToggleSection, Action::SectionX, Action::SectionY] {
+        act(harness.state_mut(), action);
+        for _ in 0..6 {
+            harness.step();
+            assert_eq!(starts_with(&harness, "The plane meets"), 0, "{action:?}");
+        }
+        settle(&mut harness);
+        assert_eq!(starts_with(&harness, "Cutting"), 0, "{action:?}");
+        assert_eq!(starts_with(&harness, "The plane meets"), 0, "{action:?}");
+    }
+}
+
 #[test]
 fn the_sign_can_be_told_without_colours() {
     let state = egui_kittest::wgpu::create_render_state(

@@ -46,6 +46,8 @@ pub(super) struct Drawing<'a> {
     pub cuts: &'a Cuts,
     /// From the crash outline to the stamped one, once they are worked out.
     pub gaps: Option<&'a Gaps>,
+    /// Outlines are still to come.
+    pub is_cutting: bool,
 }
 
 /// What the user chose, kept while the program runs.
@@ -482,6 +484,7 @@ impl Drawing<'_> {
     fn lie_words(&self, lie: Lie) -> Option<String> {
         let words = match lie {
             Lie::Together => return None,
+            Lie::Alone(_) | Lie::Nowhere if self.is_cutting => return Some("cutting…".to_owned()),
             Lie::Apart(distance) => format!(
                 "the parts lie {} from each other",
                 self.state.lengths().of(distance)

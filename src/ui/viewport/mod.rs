@@ -146,6 +146,7 @@ impl Viewports {
             plane,
             cuts: &self.sections.cuts(Role::Crash, state),
             gaps: gaps.as_deref(),
+            is_cutting: self.sections.is_cutting(&plane) || self.meshes.is_waiting(),
         };
         drawing.show(ui, commands);
     }

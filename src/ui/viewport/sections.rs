@@ -225,6 +225,8 @@ pub(super) struct SectionStore {
     background: Background<CutKey, Cut>,
     ready: BTreeMap<Place, (CutKey, Arc<Cut>)>,
     failed: Vec<CutKey>,
+    /// The plane that cuts were asked for last.
+    asked: Option<Plane>,
     /// Of gaps, the key of the crash part's cut first.
     measuring: Background<Vec<CutKey>, Gaps>,
     gaps: Option<(Vec<CutKey>, Option<Arc<Gaps>>)>,
@@ -236,6 +238,7 @@ impl SectionStore {
             background: Background::new("sections"),
             ready: BTreeMap::new(),
             failed: Vec::new(),
+            asked: None,
             measuring: Background::new("gaps"),
             gaps: None,
         }
@@ -250,6 +253,7 @@ impl SectionStore {
         wake: &egui::Context,
     ) {
         let plane = state.inspect.section.shown();
+        self.asked = plane;
         let keys = plane.into_iter().flat_map(|plane| {
             let key = move |(role, number, mesh, pose): &Uncut| {
                 let key = CutKey {
@@ -364,6 +368,11 @@ impl SectionStore {
             cuts.further.extend(found.map(|cut| (file.number, cut)));
         }
         cuts
+    }
+
+    /// True while the outlines in this plane are still to come.
+    pub fn is_cutting(&self, plane: &Plane) -> bool {
+        self.asked.as_ref() != Some(plane) || self.background.is_waiting()
     }
 
     /// True while outlines are being made.
