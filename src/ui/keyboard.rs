@@ -56,6 +56,8 @@ pub struct Keyboard {
     /// A dialog was open when the frame began, and no key has changed that.
     had_dialog: bool,
     held: Modifiers,
+    /// The events of the frame, each with whether it was taken before anything was drawn.
+    events: Vec<(Event, bool)>,
     /// The keys of the frame that are still to act, in their order.
     keys: VecDeque<Event>,
     /// What follows the last command.
@@ -76,33 +78,62 @@ impl Keyboard {
         }
     }
 
-    /// Before anything is drawn: whose the keys of this frame are. A move by keys takes them at once, so that
-    /// Enter presses no button and minus zooms no camera.
+    /// Before anything is drawn: whose the keys of this frame are. What a move by keys takes is taken at once, so that
+    /// Enter presses no button and minus zooms no camera, and so are the window's keys with Ctrl, so that Ctrl+Enter
+    /// presses none either. A field that is typed in sees them first: Enter ends what is typed.
     pub fn begin(&mut self, ctx: &egui::Context, state: &AppState, has_question: bool) {
         self.owner = self.owner(ctx, has_question);
         self.had_dialog = state.view.dialog.is_some();
         self.keys.clear();
-        if !self.is_moving(state) {
-            return;
-        }
+        let is_moving = self.is_moving(state);
+        let is_typing = self.was_typing || ctx.text_edit_focused();
         ctx.input_mut(|input| {
             let held = input.modifiers;
-            let is_taken =
-                |event: &Event| modal_input(event).is_some() || pressed(event, held).is_some();
-            let (taken, left) = std::mem::take(&mut input.events)
-                .into_iter()
-                .partition::<Vec<Event>, _>(is_taken);
-            self.keys.extend(taken);
-            input.events = left;
+            let is_taken = |event: &Event| {
+                if is_moving {
+                    modal_input(event).is_some() || pressed(event, held).is_some()
+                } else {
+                    !is_typing && self.is_ours_with_ctrl(event)
+                }
+            };
+            let events = std::mem::take(&mut input.events).into_iter();
+            let events = events.map(|event| {
+                let is_taken = is_taken(&event);
+                (event, is_taken)
+            });
+            let events: Vec<_> = events.collect();
+            let left = events.iter().filter(|(_, is_taken)| !is_taken);
+            input.events = left.map(|(event, _)| event.clone()).collect();
+            self.events = events;
         });
     }
 
-    /// When everything is drawn: the keys that nothing consumed are to act.
+    /// True for a key with Ctrl that goes down and is the window's.
+    fn is_ours_with_ctrl(&self, event: &Event) -> bool {
+        let Event::Key { modifiers, .. } = event else {
+            return false;
+        };
+        let Some((shortcut, true, _)) = pressed(event, *modifiers).filter(|(key, ..)| key.ctrl)
+        else {
+            return false;
+        };
+        let action = Action::of_shortcut(shortcut);
+        action.is_some_and(|action| is_ours(shortcut, action, self.owner, self.had_dialog))
+    }
+
+    /// When everything is drawn: the keys that were taken before and those that nothing consumed are to act, in the
+    /// order in which they came.
     pub fn collect(&mut self, ctx: &egui::Context) {
         self.was_typing = ctx.text_edit_focused();
         ctx.input(|input| {
             self.held = input.modifiers;
-            self.keys.extend(input.events.iter().cloned());
+            let mut left = input.events.iter().peekable();
+            for (event, is_taken) in self.events.drain(..) {
+                if is_taken || left.next_if_eq(&&event).is_some() {
+                    self.keys.push_back(event);
+                }
+            }
+            self.keys.extend(left.cloned());
         });
     }
 

@@ -76,6 +76,24 @@ fn load_reduce_match_and_copy_by_keyboard_alone() {
     assert!(told.any(|notice| notice.text.starts_with("Matrix (stamped → crash")));
 }
 
+/// Enter presses what has the keyboard; with Ctrl it is the window's alone.
+#[test]
+fn ctrl_enter_presses_nothing_that_has_the_keyboard() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    tab_to(&mut window, "Reduce");
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
+    window.run_steps(2);
+    finish(&mut window);
+    let document = &window.state().state().document;
+    assert!(document.current_result().is_some(), "it is matched");
+    for role in Role::ALL {
+        let part = document.part(role).expect("loaded");
+        assert!(part.level.is_none(), "and nothing is reduced");
+    }
+}
+
 #[test]
 fn the_key_of_a_match_that_cannot_begin_says_why() {
     let mut window = window();
