@@ -536,7 +536,7 @@ fn levels_that_reduce_nothing_are_not_offered() {
 }
 
 #[test]
-fn reducing_is_one_step_per_part_and_levels_follow_the_keys() {
+fn reducing_is_one_step_and_levels_follow_the_keys() {
     let mut window = Window::with_both();
     let settings = Settings {
         marked_levels: vec![100, 60, 30],
@@ -550,8 +550,23 @@ fn reducing_is_one_step_per_part_and_levels_follow_the_keys() {
         let level = window.part(role).level.as_ref().unwrap();
         assert!(level.deviation.get().is_some(), "measured");
     }
-    assert_eq!(window.state.history.n_done(), n_done + 2);
+    assert_eq!(window.state.history.n_done(), n_done + 1);
+    let name = window.state.history.undo_name();
+    assert_eq!(name, Some("Reduce both parts to at most 100"));
     window.act(Action::NextLevel);
+    for role in Role::ALL {
+        assert_eq!(window.part(role).wanted_level, Some(60));
+    }
+    window.act(Action::Undo);
+    for role in Role::ALL {
+        assert_eq!(window.part(role).wanted_level, Some(100));
+    }
+    window.act(Action::Undo);
+    for role in Role::ALL {
+        assert!(window.part(role).level.is_none(), "both are full again");
+    }
+    window.act(Action::Redo);
+    window.act(Action::Redo);
     assert_eq!(window.part(Role::Crash).wanted_level, Some(60));
     window.act(Action::PreviousLevel);
     window.act(Action::PreviousLevel);

@@ -12,7 +12,7 @@ pub use level_result::LevelResult;
 use self::level_result::LevelResults;
 use super::follow_up::FollowUp;
 use super::work::Work;
-use super::{AppState, Document, Effect, Part, Reason, Settings, ShownGeometry, facts};
+use super::{AppState, Document, Effect, GestureId, Part, Reason, Settings, ShownGeometry, facts};
 use crate::app::LogStep;
 use crate::jobs::{JobKind, MeasureLevelInput, MeasuredLevel, Recording, ReduceInput};
 use crate::role::{PerRole, Role};
@@ -22,6 +22,8 @@ use crate::role::{PerRole, Role};
 pub struct ReduceState {
     /// The last recording of each part, with the part's revision.
     recordings: PerRole<Option<(u64, Arc<Recording>)>>,
+    /// The one undo step of both parts that were last to be reduced together, with their ceiling.
+    together: Option<(GestureId, usize)>,
     level_results: LevelResults,
 }
 
@@ -110,9 +112,13 @@ impl ReduceState {
         roles: PerRole<bool>,
         max_triangles: usize,
     ) -> Vec<Effect> {
-        let chosen = Role::ALL.into_iter().filter(|role| *roles.get(*role));
+        let max_triangles = max_triangles.max(1);
+        let is_chosen = |role: &Role| *roles.get(*role) && work.document.part(*role).is_some();
+        let chosen: Vec<Role> = Role::ALL.into_iter().filter(is_chosen).collect();
+        self.together = (chosen.len() > 1).then(|| (work.history.next_gesture(), max_triangles));
+        let chosen = chosen.into_iter();
         chosen
-            .filter_map(|role| self.reduce(work, role, max_triangles.max(1)))
+            .filter_map(|role| self.reduce(work, role, max_triangles))
             .collect()
     }
 
@@ -193,8 +199,15 @@ impl ReduceState {
             facts::reduce_line(&level),
             Some(took),
         );
-        let n_triangles = facts::grouped(level.level.mesh.n_triangles());
-        let name = format!("Reduce the {} part to {n_triangles}", role.word());
+        let of_both = self.together.filter(|(_, n)| *n == level.max_triangles);
+        let gesture = of_both.map(|(gesture, _)| gesture);
+        let name = if gesture.is_some_and(|gesture| work.history.is_open(gesture)) {
+            let ceiling = facts::grouped(level.max_triangles);
+            format!("Reduce both parts to at most {ceiling}")
+        } else {
+            let n_triangles = facts::grouped(level.level.mesh.n_triangles());
+            format!("Reduce the {} part to {n_triangles}", role.word())
+        };
         let measured = Arc::clone(&level);
         let take = |document: &mut Document| {
             if let Some(part) = document.parts.get_mut(role) {
@@ -205,7 +218,7 @@ impl ReduceState {
         if is_again {
             take(work.document);
         } else {
-            work.commit(name, take);
+            work.commit_in(name, gesture, take);
         }
         work.follow(FollowUp::LevelMade);
         vec![work.start(JobKind::MeasureLevel(MeasureLevelInput {
