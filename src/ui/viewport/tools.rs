@@ -181,10 +181,11 @@ impl Tools {
         }
     }
 
-    /// Name of the handle under the pointer.
+    /// Name of the handle under the pointer; of one that is held, how far it has moved the part.
     pub fn hint(&self, state: &AppState) -> Option<String> {
         let handle = self.gizmo.active().filter(|_| self.has_gizmo)?;
-        Some(handle.label(state.moving.axes))
+        let label = || handle.label(state.moving.axes);
+        Some(self.gizmo.motion_name().unwrap_or_else(label))
     }
 
     fn update_modal(

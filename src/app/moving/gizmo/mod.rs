@@ -116,6 +116,11 @@ impl Gizmo {
         self.drag.as_ref().map(|drag| drag.handle).or(self.hovered)
     }
 
+    /// What the drag has done so far: "Move 12.5 mm along Z".
+    pub fn motion_name(&self) -> Option<String> {
+        self.drag.as_ref().map(Drag::name)
+    }
+
     /// True while a handle is held; the camera then leaves the left button alone.
     pub fn is_dragging(&self) -> bool {
         self.drag.is_some()

@@ -112,6 +112,11 @@ fn an_arrow_keeps_the_grabbed_point_under_the_pointer() {
                     name,
                     format!("Move {} along {letter}", short_number(distance))
                 );
+                assert_eq!(
+                    scene.gizmo.motion_name(),
+                    Some(name),
+                    "shown while it goes on"
+                );
             }
         }
     }
@@ -130,6 +135,7 @@ fn a_press_alone_moves_nothing() {
     });
     assert_eq!(end, Some(GizmoDelta::End));
     assert!(!scene.gizmo.is_dragging());
+    assert_eq!(scene.gizmo.motion_name(), None);
 }
 
 #[test]
