@@ -54,6 +54,27 @@ fn the_deviation_is_measured_when_something_shows_it_and_follows_quick_moves() {
 }
 
 #[test]
+fn a_map_of_the_match_that_is_turned_off_brings_the_colours_before_it_back() {
+    let mut window = Window::with_both();
+    let colors = |window: &Window| window.state.view.display.color_by;
+    window.act(Action::ToggleDeviation);
+    window.act(Action::ToggleDeviation);
+    assert_eq!(colors(&window), ColorBy::Role);
+    let display = Display {
+        color_by: ColorBy::PlasticStrain,
+        ..window.state.view.display.clone()
+    };
+    window.apply(ViewCommand::SetDisplay(Box::new(display)));
+    window.act(Action::ToggleDeviation);
+    window.act(Action::ToggleEdges);
+    window.act(Action::ToggleOverlap);
+    assert_eq!(colors(&window), ColorBy::Overlap);
+    window.act(Action::ToggleOverlap);
+    assert_eq!(colors(&window), ColorBy::PlasticStrain);
+    assert!(window.state.view.display.has_edges, "the rest stays");
+}
+
+#[test]
 fn the_deviation_follows_to_another_pose_of_the_match() {
     let mut window = with_map();
     window.act(Action::MatchOrStop);

@@ -129,7 +129,7 @@ const INSPECT: &[ActionRow] = &[
         tooltip: "Colour the parts by the signed distance between them",
         keys: Keys::press(&[key('D')]),
         enabled: |state| state.document.has_both_parts(),
-        command: |state| shown_with(state, |display| toggle_color(display, ColorBy::Deviation)),
+        command: |state| map_toggled(state, ColorBy::Deviation),
     },
     ActionRow {
         action: Action::ToggleOverlap,
@@ -137,7 +137,7 @@ const INSPECT: &[ActionRow] = &[
         tooltip: "Show where the parts match, where they deviate, and what only one of them has",
         keys: Keys::press(&[key('O')]),
         enabled: |state| state.document.has_both_parts(),
-        command: |state| shown_with(state, |display| toggle_color(display, ColorBy::Overlap)),
+        command: |state| map_toggled(state, ColorBy::Overlap),
     },
     ActionRow {
         action: Action::ToggleUncertainty,
@@ -145,7 +145,7 @@ const INSPECT: &[ActionRow] = &[
         tooltip: "Colour the stamped part by how far the pose may be off there",
         keys: Keys::press(&[key('U')]),
         enabled: AppState::has_uncertainty,
-        command: |state| shown_with(state, |display| toggle_color(display, ColorBy::Uncertainty)),
+        command: |state| map_toggled(state, ColorBy::Uncertainty),
     },
     ActionRow {
         action: Action::UpdateDeviation,
@@ -528,12 +528,12 @@ fn mapping_picture(state: &AppState, picture: Option<MapPicture>) -> Option<Comm
     shown(state.with_map_picture(picture))
 }
 
-fn toggle_color(display: &mut Display, by: ColorBy) {
-    display.color_by = if display.color_by == by {
-        ColorBy::Role
-    } else {
-        by
-    };
+/// A map of the match in place of the colours, or these again.
+fn map_toggled(state: &AppState, by: ColorBy) -> Option<Command> {
+    let before = state.view.colors_before_map;
+    shown_with(state, |display| {
+        display.color_by = if display.color_by == by { before } else { by };
+    })
 }
 
 /// A line that was not there begins in the middle.

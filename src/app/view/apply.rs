@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{BottomTab, Section, ViewCommand, ViewRoom, ViewState};
+use super::{BottomTab, Display, Section, ViewCommand, ViewRoom, ViewState};
 use crate::app::{AppState, Document, PartRef, ShownFile, facts};
 use crate::geometry::{Aabb, Camera, Point3, Similarity, Vector3};
 use crate::pipeline::load::LoadedPart;
@@ -54,7 +54,7 @@ impl ViewState {
             ViewCommand::ToggleMoveOver => self.toggle_move_over(scene),
             ViewCommand::SetShown(shown) => self.shown = shown,
             ViewCommand::SetBlinking(is_blinking) => self.is_blinking = is_blinking,
-            ViewCommand::SetDisplay(display) => self.display = *display,
+            ViewCommand::SetDisplay(display) => self.set_display(*display),
             ViewCommand::SetTab(tab) => self.set_tab(tab),
             ViewCommand::SetFreeWindow(free) => self.free_window = Some(free),
             ViewCommand::OpenSection(section, is_open) => {
@@ -76,6 +76,14 @@ impl ViewState {
             }
             ViewCommand::SetDialog(dialog) => self.dialog = dialog,
         }
+    }
+
+    fn set_display(&mut self, display: Display) {
+        let before = self.display.color_by;
+        if display.color_by.is_match_map() && !before.is_match_map() {
+            self.colors_before_map = before;
+        }
+        self.display = display;
     }
 
     fn show_section(&mut self, section: Section) {

@@ -123,6 +123,11 @@ impl ColorBy {
         }
     }
 
+    /// True for the maps that keys turn on and off: they speak of how the parts meet.
+    pub fn is_match_map(self) -> bool {
+        matches!(self, Self::Deviation | Self::Overlap | Self::Uncertainty)
+    }
+
     /// The picture of a mapping, if it is one.
     pub fn map_picture(self) -> Option<MapPicture> {
         let is_it = |picture: &MapPicture| picture.color_by() == self;

@@ -53,6 +53,8 @@ pub struct ViewState {
     pub is_blinking: bool,
     /// Plain choices about the picture.
     pub display: Display,
+    /// What the colours said before a map of the match, which its key brings back.
+    pub(super) colors_before_map: ColorBy,
     /// Stamped files that are not drawn.
     pub hidden_files: BTreeSet<PathBuf>,
     /// The tab of the bottom pane.
@@ -88,6 +90,7 @@ impl Default for ViewState {
             shown: ShownGeometry::default(),
             is_blinking: false,
             display: Display::default(),
+            colors_before_map: ColorBy::default(),
             hidden_files: BTreeSet::new(),
             tab: BottomTab::default(),
             is_graphics_only: false,
