@@ -226,9 +226,17 @@ impl Viewports {
             None => {}
         }
         let may_fly = may_move && window.has_picture && !is_linked_drag;
+        let mut shown = window.camera.follow(&camera, now, may_fly);
+        if role == Role::Stamped && over >= 1.0 {
+            // What is shown beside the left window is seen by its camera in every frame, also while that one is
+            // fitted again and again because the part that is matched moves.
+            shown = self.windows.crash.camera.at(now).unwrap_or(camera);
+            self.windows.stamped.camera.jump(shown);
+        }
+        let window = self.windows.get_mut(role);
         ViewFrame {
             window: role,
-            camera: window.camera.follow(&camera, now, may_fly),
+            camera: shown,
             aspect: f64::from(rect.width() / rect.height()),
             pose,
             over,
@@ -301,6 +309,11 @@ impl Viewports {
         match window.navigator.update(ui, frame, is_left_taken) {
             Some(camera) => {
                 window.camera.jump(camera);
+                if frame.view.over >= 1.0 {
+                    // Both windows have this camera.
+                    let other = frame.view.window.other();
+                    self.windows.get_mut(other).camera.jump(camera);
+                }
                 commands.push(ViewCommand::SetCamera(frame.camera_role(), camera).into());
                 camera
             }

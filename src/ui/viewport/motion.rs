@@ -63,7 +63,8 @@ impl SmoothCamera {
         flight.is_some_and(|flight| flight.progress(now, CameraFlight::SECS).is_some())
     }
 
-    fn at(&self, now: f64) -> Option<Camera> {
+    /// The camera that is shown at a time, once there is one.
+    pub fn at(&self, now: f64) -> Option<Camera> {
         let to = self.goal?;
         let flight = self.flight.as_ref();
         let progress = flight.and_then(|f| Some((f.from, f.progress(now, CameraFlight::SECS)?)));
