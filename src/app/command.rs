@@ -63,6 +63,7 @@ impl Command {
                 ProjectCommand::Autosave
                     | ProjectCommand::Written(..)
                     | ProjectCommand::NotWritten
+                    | ProjectCommand::SaveFailed { .. }
                     | ProjectCommand::NotifyRecovered(_)
             ),
             Self::Part(command) => !matches!(command, PartCommand::Hover(_)),

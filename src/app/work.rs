@@ -100,6 +100,14 @@ impl Work<'_> {
         self.log.push(level, step, role, text, took);
     }
 
+    /// [`Work::log_at`] with a button for each of these actions.
+    pub fn offer_at(&mut self, level: NoticeLevel, step: LogStep, text: &str, offers: &[Action]) {
+        let text = without_error_number(text);
+        let showing = self.showing(level);
+        self.log.notices.offer(level, text.clone(), showing, offers);
+        self.log.push(level, step, None, text, None);
+    }
+
     /// Shows a toast, unless the user muted its level; the bell has it in any case.
     pub fn notify(&mut self, level: NoticeLevel, text: impl Into<String>) {
         let showing = self.showing(level);

@@ -53,10 +53,20 @@ pub enum AutosaveEvent<S> {
     Saved(PathBuf, S),
     /// A project could not be saved.
     SaveFailed(String),
+    /// A project was not saved over what another window has saved there.
+    SavedElsewhere(String),
     /// The session could not be autosaved.
     AutosaveFailed(String),
     /// The sessions of other runs, newest first.
     Sessions(Vec<RecoveredSession>),
+}
+
+/// Why a project is not saved.
+enum NotSaved {
+    /// It cannot be.
+    Failed(String),
+    /// Another window has saved it meanwhile.
+    Elsewhere(String),
 }
 
 /// The thread as the window sees it. Dropping it waits for what was requested and marks the session
@@ -246,14 +256,16 @@ impl Session {
             Request::Save(path, replaces, mut project, state) => {
                 project.saved_at = unix_now();
                 let saved = self.may_replace(&path, replaces);
-                Some(match saved.and_then(|()| save(&path, &project)) {
+                let saved = saved.and_then(|()| save(&path, &project).map_err(NotSaved::Failed));
+                Some(match saved {
                     Ok(()) => {
                         self.saved.insert(path.clone(), project.saved_at);
                         // Nothing is left to be recovered until the next step.
                         self.end();
                         AutosaveEvent::Saved(path, state)
                     }
-                    Err(reason) => AutosaveEvent::SaveFailed(reason),
+                    Err(NotSaved::Failed(reason)) => AutosaveEvent::SaveFailed(reason),
+                    Err(NotSaved::Elsewhere(reason)) => AutosaveEvent::SavedElsewhere(reason),
                 })
             }
             Request::Autosave(mut project) => {
@@ -278,7 +290,7 @@ impl Session {
 
     /// Refuses to write over what another program saved since this one opened or saved the project, and over
     /// what cannot be read, which may be work all the same.
-    fn may_replace(&self, path: &Path, replaces: Option<u64>) -> Result<(), String> {
+    fn may_replace(&self, path: &Path, replaces: Option<u64>) -> Result<(), NotSaved> {
         let Some(opened) = replaces else {
             return Ok(());
         };
@@ -291,23 +303,23 @@ impl Session {
         let present = match Project::read(path) {
             Ok((present, _)) => present.saved_at,
             Err(ProjectError::Newer { .. }) => {
-                return Err(format!(
+                return Err(NotSaved::Failed(format!(
                     "a newer version of shapematch has saved {name} since it was opened here"
-                ));
+                )));
             }
             Err(_) => {
-                return Err(format!(
+                return Err(NotSaved::Failed(format!(
                     "{name} has changed since it was opened here and cannot be read as a project"
-                ));
+                )));
             }
         };
         let own = self.saved.get(path).copied();
         if present == opened || Some(present) == own {
             return Ok(());
         }
-        Err(format!(
+        Err(NotSaved::Elsewhere(format!(
             "another window has saved {name} since it was opened here"
-        ))
+        )))
     }
 
     fn path(&self) -> Option<PathBuf> {

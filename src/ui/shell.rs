@@ -553,12 +553,23 @@ fn from_autosave(event: AutosaveEvent<Box<Document>>) -> Vec<Command> {
             vec![ProjectCommand::Written(path, document).into()]
         }
         AutosaveEvent::SaveFailed(reason) => {
-            let text = format!(
-                "The project is not saved: {reason}. File › Save project as… writes it elsewhere"
-            );
+            let is_elsewhere = false;
             vec![
-                NoticeCommand::Tell(NoticeLevel::Error, text).into(),
-                ProjectCommand::NotWritten.into(),
+                ProjectCommand::SaveFailed {
+                    reason,
+                    is_elsewhere,
+                }
+                .into(),
+            ]
+        }
+        AutosaveEvent::SavedElsewhere(reason) => {
+            let is_elsewhere = true;
+            vec![
+                ProjectCommand::SaveFailed {
+                    reason,
+                    is_elsewhere,
+                }
+                .into(),
             ]
         }
         AutosaveEvent::AutosaveFailed(reason) => {

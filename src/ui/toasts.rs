@@ -62,7 +62,7 @@ fn fitting<'a>(ui: &Ui, state: &'a AppState, width: f32, room: f32) -> Vec<&'a N
 }
 
 fn buttons(notice: &Notice) -> bool {
-    notice.level >= NoticeLevel::Warning || notice.offer.is_some()
+    notice.level >= NoticeLevel::Warning || !notice.offers.is_empty()
 }
 
 fn text(ui: &Ui, notice: &Notice, width: f32) -> LayoutJob {
@@ -149,10 +149,12 @@ fn toast_ui(
 }
 
 fn buttons_ui(ui: &mut Ui, notice: &Notice, state: &AppState, commands: &mut Vec<Command>) {
-    if let Some(action) = notice.offer {
+    for &action in &notice.offers {
         let label = match action {
             Action::Swap => "Swap",
             Action::ReloadChanged => "Reload",
+            Action::SaveProjectAs => "Save as…",
+            Action::ReopenProject => "Open again",
             other => other.row().label,
         };
         let can = action.enabled(state).is_ok();
@@ -162,7 +164,8 @@ fn buttons_ui(ui: &mut Ui, notice: &Notice, state: &AppState, commands: &mut Vec
         }
     }
     if notice.level >= NoticeLevel::Warning {
-        if ui.button("Show in log").clicked() {
+        // Beside several offers there is no room for both.
+        if notice.offers.len() < 2 && ui.button("Show in log").clicked() {
             commands.push(ViewCommand::SetTab(BottomTab::Log).into());
             commands.push(NoticeCommand::Dismiss(notice.id).into());
         }

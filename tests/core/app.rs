@@ -355,7 +355,7 @@ fn two_files_without_roles_are_sorted_by_content() {
         window.part(Role::Stamped).facts.formed,
         FormingEvidence::ThicknessPerElement
     );
-    let offers_swap = |n: &Notice| n.offer == Some(Action::Swap);
+    let offers_swap = |n: &Notice| n.offers == [Action::Swap];
     assert!(window.state.log.notices.toasts().any(offers_swap));
     let before = window.mesh(Role::Crash);
     window.apply(FileCommand::Swap);
@@ -373,7 +373,7 @@ fn a_swap_is_offered_for_files_that_were_opened_the_other_way_round() {
         window.open(crash, Role::Crash);
         window.open(stamped, Role::Stamped);
         assert_eq!(window.part(Role::Crash).loaded.file_name(), crash);
-        let is_offer = |n: &Notice| n.offer == Some(Action::Swap);
+        let is_offer = |n: &Notice| n.offers == [Action::Swap];
         let is_offered = window.state.log.notices.toasts().any(is_offer);
         window.act(Action::Swap);
         let mut left = window.state.log.notices.toasts();
@@ -933,7 +933,7 @@ fn a_file_that_ends_a_result_says_so_and_offers_the_way_back() {
     window.state.tick(Duration::from_secs(1));
     window.open("car.k", Role::Crash);
     assert!(window.state.document.result.is_none());
-    let offers = |notice: &&Notice| notice.offer == Some(Action::Undo);
+    let offers = |notice: &&Notice| notice.offers == [Action::Undo];
     let toasts = |window: &Window| window.state.log.notices.toasts().filter(offers).count();
     assert_eq!(toasts(&window), 1);
     let told = &window.state.log.latest(LogStep::Load).unwrap().text;

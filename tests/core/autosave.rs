@@ -172,7 +172,7 @@ fn a_project_that_another_window_saved_is_not_written_over() {
     second.save(path.clone(), Some(1000), project("/other.k"), 7);
     let event = second.wait_for_event(LONG);
     assert!(
-        matches!(&event, Some(AutosaveEvent::SaveFailed(reason)) if reason.contains("another window")),
+        matches!(&event, Some(AutosaveEvent::SavedElsewhere(reason)) if reason.contains("another window")),
         "{event:?}"
     );
     assert_eq!(title(), "two.k");

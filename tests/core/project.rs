@@ -239,6 +239,39 @@ fn a_file_that_changed_keeps_the_pose_and_ages_the_result() {
     assert!(toast.text.contains("has changed since"), "{}", toast.text);
 }
 
+/// Another window's state of the project is not written over; this work can go elsewhere, or that state be opened.
+#[test]
+fn a_project_that_is_not_saved_offers_what_can_be_done() {
+    let (_folder, [crash, stamped, path]) = folder();
+    let mut window = worked(&crash, &stamped);
+    assert!(Action::ReopenProject.enabled(&window.state).is_err());
+    save(&mut window, &path);
+    window.apply(MoveCommand::Flip(Axis::X));
+    let failed = |is_elsewhere| ProjectCommand::SaveFailed {
+        reason: "that is why".to_owned(),
+        is_elsewhere,
+    };
+    let offers = |window: &Window| {
+        let told = window.state.log.notices.toasts().next().expect("a toast");
+        assert_eq!(told.text, "the project is not saved: that is why");
+        told.offers.clone()
+    };
+    window.apply(failed(false));
+    assert_eq!(offers(&window), [Action::SaveProjectAs]);
+    window.apply(failed(true));
+    assert_eq!(
+        offers(&window),
+        [Action::SaveProjectAs, Action::ReopenProject]
+    );
+    window.act(Action::ReopenProject);
+    assert!(window.state.document.current_result().is_some());
+    window.act(Action::Undo);
+    assert!(
+        window.state.document.current_result().is_none(),
+        "the work is one step back"
+    );
+}
+
 /// A saved project whose stamped file was moved since, with the files it names and where that one is now.
 fn saved_without_stamped() -> (tempfile::TempDir, [PathBuf; 3], PathBuf) {
     let (folder, [crash, stamped, path]) = folder();

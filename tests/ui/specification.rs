@@ -430,7 +430,7 @@ fn a_file_that_changes_on_disk_is_offered_to_be_read_again() {
     let toasts = window.state().state().log.notices.toasts();
     assert_eq!(
         toasts
-            .filter(|toast| toast.offer == Some(Action::ReloadChanged))
+            .filter(|toast| toast.offers == [Action::ReloadChanged])
             .count(),
         1
     );
@@ -452,7 +452,7 @@ fn a_file_that_changes_on_disk_is_offered_to_be_read_again() {
         state.document.current_result().is_none(),
         "it is out of date"
     );
-    let offers = |toast: &&shapematch::app::Notice| toast.offer == Some(Action::ReloadChanged);
+    let offers = |toast: &&shapematch::app::Notice| toast.offers == [Action::ReloadChanged];
     assert_eq!(state.log.notices.toasts().filter(offers).count(), 0);
     // The step back is the old content, which the file no longer has.
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);

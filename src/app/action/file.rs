@@ -1,10 +1,11 @@
 //! The menu *File*.
 
-use super::conditions::{always, any_changed_unlocked, any_part_unlocked, part_unlocked};
+use super::conditions::{always, any_changed_unlocked, any_part_unlocked, part_unlocked, require};
 use super::row::keys::{ctrl, ctrl_shift};
 use super::row::some;
 use super::{Action, ActionRow, Keys, MenuGroup, toggled_dialog};
 use crate::app::{Command, Dialog, FileCommand, ProjectCommand};
+use crate::jobs::ProjectRequest;
 use crate::role::Role;
 
 pub(super) const GROUPS: &[MenuGroup] = &[
@@ -58,6 +59,26 @@ const PROJECT: &[ActionRow] = &[
         keys: Keys::NONE,
         enabled: |state| state.jobs.is_unlocked(),
         command: |_| some(ProjectCommand::AskOpen),
+    },
+    ActionRow {
+        action: Action::ReopenProject,
+        label: "Open project again",
+        tooltip: "Open the project as its file has it now; the step back leads to this work",
+        keys: Keys::NONE,
+        enabled: |state| {
+            require(
+                state.project_path().is_some(),
+                "The work is no saved project.",
+            )?;
+            state.jobs.is_unlocked()
+        },
+        command: |state| {
+            let path = state.project_path()?.clone();
+            some(ProjectCommand::Open(ProjectRequest {
+                path,
+                ..ProjectRequest::default()
+            }))
+        },
     },
     ActionRow {
         action: Action::SaveProject,

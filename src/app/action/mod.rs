@@ -98,6 +98,8 @@ actions! {
     OpenRealisticExample,
     /// Choose a project.
     OpenProject,
+    /// Read the project from its file again.
+    ReopenProject,
     /// Write the project to its file.
     SaveProject,
     /// Write the project to another file.

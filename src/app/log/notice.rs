@@ -86,7 +86,7 @@ pub struct Notice {
     /// True until it was read or dismissed.
     pub is_unread: bool,
     /// What the user may want to do about it, beside closing it.
-    pub offer: Option<Action>,
+    pub offers: Vec<Action>,
     /// The job that failed, if it reports one.
     of_job: Option<JobKey>,
     is_toast: bool,
@@ -127,15 +127,15 @@ pub struct Notices {
 impl Notices {
     /// Shows a message; the same message again only counts up and shows anew.
     pub fn push(&mut self, level: NoticeLevel, text: String, showing: Showing) {
-        self.add(level, text, showing, None);
+        self.add(level, text, showing, &[]);
     }
 
-    /// [`Notices::push`] with a button for an action.
-    pub fn offer(&mut self, level: NoticeLevel, text: String, showing: Showing, action: Action) {
-        self.add(level, text, showing, Some(action));
+    /// [`Notices::push`] with a button for each of these actions.
+    pub fn offer(&mut self, level: NoticeLevel, text: String, showing: Showing, offers: &[Action]) {
+        self.add(level, text, showing, offers);
     }
 
-    fn add(&mut self, level: NoticeLevel, text: String, showing: Showing, offer: Option<Action>) {
+    fn add(&mut self, level: NoticeLevel, text: String, showing: Showing, offers: &[Action]) {
         if level == NoticeLevel::Info {
             return;
         }
@@ -152,7 +152,7 @@ impl Notices {
             count,
             at: showing.now,
             is_unread: true,
-            offer,
+            offers: offers.to_vec(),
             of_job: None,
             is_toast: !showing.is_muted,
         });
@@ -226,10 +226,10 @@ impl Notices {
     /// What an action was offered for is over.
     pub fn withdraw(&mut self, action: Action) {
         for notice in &mut self.items {
-            if notice.offer == Some(action) {
+            if notice.offers.contains(&action) {
                 notice.is_toast = false;
                 notice.is_unread = false;
-                notice.offer = None;
+                notice.offers.clear();
             }
         }
     }

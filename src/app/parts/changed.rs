@@ -51,7 +51,12 @@ impl PartsState {
             work.log_step(LogStep::Load, Some(role), text.clone(), None);
             let showing = work.showing(NoticeLevel::Warning);
             let notices = &mut work.log.notices;
-            notices.offer(NoticeLevel::Warning, text, showing, Action::ReloadChanged);
+            notices.offer(
+                NoticeLevel::Warning,
+                text,
+                showing,
+                &[Action::ReloadChanged],
+            );
         }
         self.withdraw_offer(work);
     }

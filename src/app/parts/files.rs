@@ -413,7 +413,7 @@ impl PartsState {
             work.log_step(LogStep::Load, Some(role), text.clone(), None);
             let showing = work.showing(NoticeLevel::Note);
             let notices = &mut work.log.notices;
-            notices.offer(NoticeLevel::Note, text, showing, Action::Undo);
+            notices.offer(NoticeLevel::Note, text, showing, &[Action::Undo]);
         }
     }
 
@@ -452,7 +452,7 @@ impl PartsState {
         let showing = work.showing(NoticeLevel::Note);
         work.log
             .notices
-            .offer(NoticeLevel::Note, text, showing, Action::Swap);
+            .offer(NoticeLevel::Note, text, showing, &[Action::Swap]);
     }
 
     /// A part took another selection or unit.
@@ -531,7 +531,7 @@ fn offer_swap(work: &mut Work<'_>) {
     work.log_step(LogStep::Load, None, text.clone(), None);
     let showing = work.showing(NoticeLevel::Warning);
     let notices = &mut work.log.notices;
-    notices.offer(NoticeLevel::Warning, text, showing, Action::Swap);
+    notices.offer(NoticeLevel::Warning, text, showing, &[Action::Swap]);
 }
 
 /// How plainly a file's name says that it is the stamped part: 1, that it is the crash part: -1, else 0.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::{ProjectCommand, ProjectState};
 use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
-use crate::app::{Dialog, Document, Effect, LogStep, NoticeLevel};
+use crate::app::{Action, Dialog, Document, Effect, LogStep, NoticeLevel};
 use crate::jobs::{JobKind, Located, ProjectFile, ProjectRequest};
 use crate::pipeline::project::{EXTENSION, is_project};
 use crate::role::Role;
@@ -43,6 +43,14 @@ impl ProjectState {
             ProjectCommand::Written(path, document) => self.written(work, path, *document),
             ProjectCommand::NotWritten => {
                 self.quits_when_saved = false;
+                Vec::new()
+            }
+            ProjectCommand::SaveFailed {
+                reason,
+                is_elsewhere,
+            } => {
+                self.quits_when_saved = false;
+                tell_not_saved(work, &reason, is_elsewhere);
                 Vec::new()
             }
             ProjectCommand::Autosave => {
@@ -89,6 +97,7 @@ impl ProjectState {
     fn written(&mut self, work: &mut Work<'_>, path: PathBuf, document: Document) -> Vec<Effect> {
         let text = format!("project saved: {}", path.display());
         work.log_at(NoticeLevel::Success, LogStep::Project, None, text, None);
+        work.log.notices.withdraw(Action::SaveProjectAs);
         let project = document.project;
         self.saved = Some(document);
         let now = work.unix_now();
@@ -150,6 +159,16 @@ fn suggested_path(document: &Document) -> PathBuf {
     let stem = name.as_deref().and_then(|name| name.split('.').next());
     let stem = stem.filter(|stem| !stem.is_empty()).unwrap_or("match");
     path.with_file_name(format!("{stem}.{EXTENSION}"))
+}
+
+/// What can be done instead is one click away.
+fn tell_not_saved(work: &mut Work<'_>, reason: &str, is_elsewhere: bool) {
+    let text = format!("the project is not saved: {reason}");
+    let mut offers = vec![Action::SaveProjectAs];
+    if is_elsewhere {
+        offers.push(Action::ReopenProject);
+    }
+    work.offer_at(NoticeLevel::Error, LogStep::Project, &text, &offers);
 }
 
 fn write(work: &mut Work<'_>, mut path: PathBuf, replaces: Option<u64>) -> Vec<Effect> {

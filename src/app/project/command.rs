@@ -29,8 +29,15 @@ pub enum ProjectCommand {
     Write(PathBuf),
     /// The shell wrote this state of the work.
     Written(PathBuf, Box<Document>),
-    /// The shell could not write, or the user closed the dialog.
+    /// The user closed the dialog.
     NotWritten,
+    /// The shell could not write.
+    SaveFailed {
+        /// Why not.
+        reason: String,
+        /// Another window has saved the project since it was opened here.
+        is_elsewhere: bool,
+    },
     /// Save the session in case of a crash, if there is something new.
     Autosave,
     /// The shell found sessions of the last runs.
