@@ -24,11 +24,13 @@ const WITH_DIALOG: [Action; 9] = [
 ];
 
 /// Actions that begin the work itself or look for what is not there: where they are not possible, their keys say why.
-const SAY_WHY: [Action; 4] = [
+const SAY_WHY: [Action; 6] = [
     Action::MatchOrStop,
     Action::Refine,
     Action::MapOrCancel,
     Action::NextAlternative,
+    Action::Blink,
+    Action::ToggleWipe,
 ];
 
 /// What the keys of a frame belong to: the topmost thing that is open.
@@ -200,7 +202,8 @@ fn of_event(
     }
     let alone = |command| (command, None);
     let mode = action.row().keys.mode;
-    if mode == KeyMode::WhileHeld {
+    let is_possible = action.enabled(state).is_ok();
+    if mode == KeyMode::WhileHeld && (is_possible || !is_pressed) {
         let is_new = is_pressed != state.view.is_blinking;
         return is_new.then(|| alone(ViewCommand::SetBlinking(is_pressed).into()));
     }

@@ -65,9 +65,15 @@ fn clicks_alternate_and_each_is_one_step() {
     assert_eq!(window.state.next_pick(), Some((0, Role::Crash)));
     pick(&mut window, Role::Crash, Point3::origin());
     assert_eq!(window.state.next_pick(), Some((0, Role::Stamped)));
-    // Out of turn the point is picked anew.
+    // Out of turn the point is picked anew, which is told.
+    assert!(window.state.log.notices.toasts().next().is_none());
     pick(&mut window, Role::Crash, Point3::new(1.0, 0.0, 0.0));
     assert_eq!(window.state.document.current_pairs().len(), 1);
+    let told = window.state.log.notices.toasts().next().unwrap();
+    assert_eq!(
+        told.text,
+        "The crash point of pair 1 is picked anew; the next one is on the stamped part, in the right window"
+    );
     pick(&mut window, Role::Stamped, Point3::origin());
     assert_eq!(window.state.next_pick(), Some((1, Role::Crash)));
     let n_steps = window.state.history.n_done();
@@ -137,6 +143,15 @@ fn a_wrong_pair_is_named_and_picked_again() {
         Some((1, Role::Crash)),
         "not asked for"
     );
+    let why = window.state.wrong_pick(Role::Stamped);
+    let words = "Pair 2 waits for its point on the crash part, in the left window";
+    assert_eq!(why.as_deref(), Some(words));
+    assert_eq!(window.state.wrong_pick(Role::Crash), None);
+    window.act(Action::ToggleMoveOver);
+    let why = window.state.wrong_pick(Role::Stamped).unwrap();
+    assert!(why.starts_with("Points are picked in the left window"));
+    assert_eq!(window.state.wrong_pick(Role::Crash), None);
+    window.act(Action::ToggleMoveOver);
     let right = pose().apply(&Point3::from(PLACES[1]));
     pick(
         &mut window,

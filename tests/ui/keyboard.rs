@@ -126,6 +126,18 @@ fn keys_that_have_nothing_to_do_yet_say_so_and_show_the_section_they_speak_of() 
     window.run_steps(2);
     assert!(told(&window, "There is no match yet: "));
     assert!(is_open(&window));
+    for key in [Key::W, Key::B] {
+        window.key_press(Key::Escape);
+        window.run_steps(2);
+        assert!(!told(&window, "Move the stamped part over first"));
+        window.key_down(key);
+        window.run_steps(2);
+        assert!(told(&window, "Move the stamped part over first"), "{key:?}");
+        let view = &window.state().state().view;
+        assert!(view.display.wipe.is_none() && !view.is_blinking, "{key:?}");
+        window.key_up(key);
+        window.run_steps(2);
+    }
 }
 
 #[test]

@@ -59,6 +59,12 @@ pub(super) fn is_reduced(state: &AppState) -> Result<(), Reason> {
     require(any, "No part is reduced.")
 }
 
+/// `Ok` if there is something to blink or wipe between.
+pub(super) fn has_two_pictures(state: &AppState) -> Result<(), Reason> {
+    let any = state.view.is_moved_over || is_reduced(state).is_ok();
+    require(any, "Move the stamped part over first, or reduce a part.")
+}
+
 pub(super) fn has_result(state: &AppState) -> Result<(), Reason> {
     state.document.has_result()
 }

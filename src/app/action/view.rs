@@ -1,6 +1,6 @@
 //! The menu *View*: display, inspection, section, camera, size of the window's text.
 
-use super::conditions::{always, has_mapping, is_reduced, require};
+use super::conditions::{always, has_mapping, has_two_pictures, is_reduced, require};
 use super::row::keys::{ctrl, ctrl_digit, digit, function, key, shift};
 use super::row::some;
 use super::{Action, ActionRow, Key, Keys, MenuGroup, Reason, Shortcut};
@@ -35,7 +35,7 @@ const COMPARE: &[ActionRow] = &[
         label: "Blink",
         tooltip: "Hold to see the full mesh, or the other part when moved over",
         keys: Keys::hold(&[key('B')]),
-        enabled: always,
+        enabled: has_two_pictures,
         command: |_| some(ViewCommand::SetBlinking(true)),
     },
     ActionRow {
@@ -83,7 +83,7 @@ const DISPLAY: &[ActionRow] = &[
         label: "Wipe",
         tooltip: "A line with the stamped part on one side only; before moving over: reduced | full",
         keys: Keys::press(&[key('W')]),
-        enabled: always,
+        enabled: has_two_pictures,
         // Before the part is moved over, the same key wipes between reduced and full.
         command: |state| {
             let is_split = !state.view.is_moved_over && is_reduced(state).is_ok();

@@ -1,8 +1,8 @@
 //! What picking, changing and fitting of point pairs change.
 
-use super::{PairCommand, PairTool, PairsState, PickedPoint, PointPair};
-use crate::app::LogStep;
+use super::{PairCommand, PairTool, PairsState, PickedPoint, PointPair, place_of};
 use crate::app::work::Work;
+use crate::app::{LogStep, NoticeLevel};
 use crate::role::Role;
 
 impl PairsState {
@@ -51,6 +51,17 @@ impl PairsState {
         let Some(place) = self.place_of_pick(work.document, role) else {
             return;
         };
+        let known = work.document.current_pairs().get(place);
+        let is_replaced = known.is_some_and(|pair| pair.get(role).is_some());
+        if is_replaced && self.tool.is_some_and(|tool| tool.repick.is_none()) {
+            let text = format!(
+                "The {} point of pair {} is picked anew; the next one is {}",
+                role.word(),
+                place + 1,
+                place_of(role.other())
+            );
+            work.notify(NoticeLevel::Note, text);
+        }
         let name = format!("Pair {}, {} point", place + 1, role.word());
         change_pairs(work, name, |pairs| {
             if pairs.len() <= place {

@@ -192,6 +192,29 @@ impl AppState {
     pub fn next_pick(&self) -> Option<(usize, Role)> {
         self.pairs.next_pick(&self.document)
     }
+
+    /// Why a click in this window picks nothing, if the tool is on and another window has what is asked for.
+    pub fn wrong_pick(&self, window: Role) -> Option<String> {
+        let (pair, asked) = self.next_pick()?;
+        if self.view.is_moved_over {
+            let is_wrong = window == Role::Stamped;
+            return is_wrong.then(|| {
+                "Points are picked in the left window while the stamped part is moved over"
+                    .to_owned()
+            });
+        }
+        let is_wrong = window != asked && self.pairs.tool?.repick.is_some();
+        is_wrong.then(|| format!("Pair {} waits for its point {}", pair + 1, place_of(asked)))
+    }
+}
+
+/// "on the stamped part, in the right window".
+pub(super) fn place_of(role: Role) -> String {
+    let side = match role {
+        Role::Crash => "left",
+        Role::Stamped => "right",
+    };
+    format!("on the {} part, in the {side} window", role.word())
 }
 
 impl PairsState {

@@ -102,7 +102,16 @@ impl PartsState {
         }
         let n_paths = paths.len();
         if n_paths > 2 {
-            let text = format!("{n_paths} files were dropped; the first two are opened");
+            let left = paths[2..].iter().map(|path| {
+                let name = path.file_name().unwrap_or_default();
+                name.to_string_lossy().into_owned()
+            });
+            let left: Vec<String> = left.collect();
+            let text = format!(
+                "{n_paths} files were dropped; the first two are opened, not {}: further stamped files go into the \
+                 list of section 4",
+                left.join(", ")
+            );
             work.log_at(NoticeLevel::Note, LogStep::Load, None, text, None);
         }
         let first = role.unwrap_or_else(|| self.role_to_fill(work));

@@ -5,7 +5,7 @@ use egui::{Pos2, Rect};
 use super::frame::FrameContext;
 use super::navigation::{pixel_of, pos_of, screen_of};
 use super::picture::Hit;
-use crate::app::{Command, PairCommand, PickKind, PickedPoint};
+use crate::app::{Command, NoticeCommand, NoticeLevel, PairCommand, PickKind, PickedPoint};
 use crate::geometry::{Camera, Point3};
 use crate::role::Role;
 
@@ -60,12 +60,16 @@ struct PointPicker<'a>(&'a FrameContext<'a>);
 
 impl PointPicker<'_> {
     fn update(&self, commands: &mut Vec<Command>) -> Option<Pick> {
-        let pick = self.pick()?;
+        let pick = self.pick();
         if self.0.response.clicked() {
-            let (role, point) = (pick.role, pick.picked);
-            commands.push(PairCommand::Pick { role, point }.into());
+            if let Some(why) = self.0.state.wrong_pick(self.0.view.window) {
+                commands.push(NoticeCommand::Tell(NoticeLevel::Note, why).into());
+            } else if let Some(Pick { role, picked, .. }) = pick {
+                let point = picked;
+                commands.push(PairCommand::Pick { role, point }.into());
+            }
         }
-        Some(pick)
+        pick
     }
 
     /// The part that is asked for in this window: the one of the next click where both are, else the
