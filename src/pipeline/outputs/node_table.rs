@@ -2,7 +2,7 @@
 
 use crate::assess::PoseUncertainty;
 use crate::assess::deviation::{
-    DeviationField, DeviationSettings, source_on_target, target_on_source,
+    DeviationField, DeviationSettings, OverlapClass, source_on_target, target_on_source,
 };
 use crate::geometry::chunks::for_chunks;
 use crate::geometry::{Point3, Similarity};
@@ -113,8 +113,10 @@ pub fn node_table(
         "x y z: where the node lies in the crash part's frame, stamped nodes moved".to_owned(),
         format!("distance: to the other part, {sign}"),
         format!(
-            "class: matched within {}, off by more, only_here where the other part ends",
-            field.limit
+            "class: matched within {}; off: {}; only_here: {}, because the other part ends there",
+            field.limit,
+            OverlapClass::OffByMore.label(),
+            OverlapClass::OnlyHere.label()
         ),
         "pose_uncertainty: how far the pose of the match may be off at this stamped node; empty where it \
          is not known"

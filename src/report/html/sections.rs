@@ -5,6 +5,7 @@ use maud::{Markup, html};
 use super::page::{block, cell, fact_table, folded, image, printable, section};
 use super::{CardsInfo, Figure, Report, charts};
 use crate::assess::beside;
+use crate::assess::deviation::OverlapClass;
 use crate::geometry::{Matrix3, Similarity, Vector3};
 use crate::report::matrix::number;
 use crate::report::{MatrixForm, PoseRecord};
@@ -129,7 +130,7 @@ impl Report<'_> {
             "Without sign, because the crash part has no consistent sides."
         };
         html! {
-            p { (sign) " Grey: no counterpart, because the other part ends there." }
+            p { (sign) " Grey: " (OverlapClass::OnlyHere.label()) ", because the other part ends there." }
             (pictures(&self.figures.maps))
             div.scale { (charts::color_legend(&self.scale, lengths)) }
             @if let Some(offset) = stats.stamped.offset {

@@ -50,9 +50,10 @@ impl Report<'_> {
             .collect();
         let columns = [
             Column::text("Nodes of → to"),
+            // The classes by their names, as titles.
             Column::number("Matched"),
-            Column::number("Off by more"),
-            Column::number("No counterpart"),
+            Column::number("Beyond the limit"),
+            Column::number("On this part only"),
             Column::number("Mean"),
             Column::number(COMPARED_RMS.name),
             Column::number(COMPARED_P95.name),

@@ -169,10 +169,9 @@ fn rows(state: &AppState, comparison: &Comparison) -> Vec<(String, [String; 2])>
     for (index, class) in OverlapClass::ALL.into_iter().enumerate() {
         let name = match class {
             OverlapClass::Matched => {
-                format!("matched ≤ {}", lengths.of(deviation.limit))
+                format!("{} ≤ {}", class.label(), lengths.of(deviation.limit))
             }
-            OverlapClass::OffByMore => "beyond the limit".to_owned(),
-            OverlapClass::OnlyHere => "on this part only".to_owned(),
+            OverlapClass::OffByMore | OverlapClass::OnlyHere => class.label().to_owned(),
         };
         rows.push(row(&name, &|s| percent(s.class_shares[index])));
     }
@@ -395,11 +394,8 @@ fn csv(state: &AppState, comparison: &Comparison) -> String {
     line(COMPARED_P95.name, both.map(|s| s.p95));
     line("Min", both.map(|s| s.min));
     line("Max", both.map(|s| s.max));
-    for (index, name) in ["matched", "beyond the limit", "on this part only"]
-        .iter()
-        .enumerate()
-    {
-        line(name, both.map(|s| s.class_shares[index]));
+    for (index, class) in OverlapClass::ALL.into_iter().enumerate() {
+        line(class.label(), both.map(|s| s.class_shares[index]));
     }
     text += "\nplace,part,node,value,x,y,z\n";
     let mut place =

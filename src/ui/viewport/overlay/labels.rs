@@ -9,6 +9,7 @@ use egui::{
 
 use super::{MARGIN, Overlay, legend};
 use crate::app::{BottomTab, Command, InspectCommand, Label, ViewCommand};
+use crate::assess::deviation::OverlapClass;
 use crate::role::Role;
 use crate::ui::focus::is_ringed;
 use crate::ui::theme::color;
@@ -126,7 +127,7 @@ fn texts(over: &Overlay<'_>, placed: &Placed<'_>) -> [String; 2] {
     let value = match over.frame.state.label_value(label) {
         Some(value) => over.frame.state.lengths().signed_of(value),
         None if over.frame.state.comparison().is_none() => "–".to_owned(),
-        None => "no counterpart".to_owned(),
+        None => OverlapClass::OnlyHere.label().to_owned(),
     };
     let node = label.node.map(|node| format!("node {node}"));
     let below = match (label.name.as_str(), node) {

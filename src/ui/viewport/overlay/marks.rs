@@ -174,7 +174,9 @@ fn value_text(over: &Overlay<'_>, hit: &Hit) -> Option<String> {
     let is_colored = |role| *state.view.display.coloring.on.get(role);
     match (over.kind?, hit.value) {
         (FieldKind::Deviation, Some(value)) => Some(state.lengths().signed_of(value)),
-        (FieldKind::Deviation, None) if is_colored(hit.role) => Some("no counterpart".to_owned()),
+        (FieldKind::Deviation, None) if is_colored(hit.role) => {
+            Some(OverlapClass::OnlyHere.label().to_owned())
+        }
         (FieldKind::Deviation, None) => None,
         (FieldKind::Overlap, value) => {
             let class = match value {

@@ -39,12 +39,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     ui.add_space(3.0);
     let limit = over.frame.state.lengths().of(comparison.deviation.limit);
     for (index, class) in OverlapClass::ALL.into_iter().enumerate() {
-        let words = match class {
-            OverlapClass::Matched => "matched".to_owned(),
-            OverlapClass::OffByMore => "beyond the limit".to_owned(),
-            OverlapClass::OnlyHere => "on this part only".to_owned(),
-        };
-        row(ui, over, class, &words, index, &roles);
+        row(ui, over, class, class.label(), index, &roles);
     }
     ui.label(
         RichText::new(format!(
