@@ -218,6 +218,9 @@ const REPLACED_TEXTS: &[(&str, &str)] = &[
     ("No command of that name", "No matching command"),
     ("Own size", "Custom size"),
     ("Settled below", "Convergence limit"),
+    ("Off by more", "Beyond the limit"),
+    ("No counterpart\"", "On this part only"),
+    ("no counterpart\"", "on this part only"),
 ];
 
 #[test]
