@@ -116,7 +116,8 @@ impl Reason {
                 p95,
                 rivals_sought,
             } => format!(
-                "{} of the smaller part has a counterpart, 95 % of the overlap lies within {}, and {}",
+                "{} of the smaller part has a counterpart with like normals, 95 % of the overlap lies \
+                 within {}, and {}",
                 percent(*overlap),
                 lengths.bound(*p95),
                 if *rivals_sought {
@@ -224,7 +225,7 @@ impl ShapeReason {
         match self {
             Self::HardlyMet { share } => {
                 format!(
-                    "only {} of the smaller part has a counterpart",
+                    "only {} of the smaller part has a counterpart with like normals",
                     percent(*share)
                 )
             }

@@ -18,7 +18,8 @@ pub const OVERLAP_SPREAD: MeasureName = MeasureName {
 
 /// What [`Coverage`](crate::assess::Coverage) calls overlap.
 pub const OVERLAP_HELP: &str = "Share of this part's area whose nodes lie within the limit of the other part, full \
-                                meshes";
+                                meshes, whatever their normals; the verdict's sentence counts places with like \
+                                normals alone";
 
 /// Root mean square of [`DeviationStats`](crate::assess::deviation::DeviationStats).
 pub const COMPARED_RMS: MeasureName = MeasureName {
