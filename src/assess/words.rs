@@ -302,7 +302,7 @@ impl ShapeKind {
 }
 
 impl ShapeStatement {
-    /// "same part, deformed: bend and twist 0.63 mm, remainder 0.13 mm (tolerance 5.00 mm and 1.00 mm)".
+    /// "same part, deformed: bend and twist 0.63 of 5.00 mm, remainder 0.13 of 1.00 mm".
     pub fn words(&self, lengths: Lengths) -> String {
         let label = self.kind.label();
         if !self.remainder.is_finite() {
@@ -314,7 +314,7 @@ impl ShapeStatement {
             } else {
                 ""
             };
-            format!(", offset of the sheets {}{removed}", lengths.of(offset))
+            format!(", offset {}{removed}", lengths.of(offset))
         });
         let trim = match (self.borders.other_trim, self.borders.apart) {
             (Some(apart), _) => {
@@ -328,11 +328,9 @@ impl ShapeStatement {
             _ => String::new(),
         };
         format!(
-            "{label}: bend and twist {}, remainder {}{offset}{trim} (tolerance {} and {})",
-            lengths.of(self.springback),
-            lengths.of(self.remainder),
-            lengths.of(self.tolerance.springback),
-            lengths.of(self.tolerance.remainder)
+            "{label}: bend and twist {}, remainder {}{offset}{trim}",
+            lengths.within(self.springback, self.tolerance.springback),
+            lengths.within(self.remainder, self.tolerance.remainder)
         )
     }
 }

@@ -410,6 +410,11 @@ fn one_end_that_was_cut_elsewhere_is_told_with_its_place() {
         words.contains("trimmed differently at one place"),
         "{words}"
     );
+    // Each value has its limit beside it.
+    let limits = [shape.tolerance.springback, shape.tolerance.remainder];
+    for limit in limits.map(|limit| format!(" of {}", Lengths::default().of(limit))) {
+        assert!(words.contains(&limit), "{words}");
+    }
 }
 
 #[test]
