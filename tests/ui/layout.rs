@@ -463,6 +463,27 @@ fn the_verdict_is_seen_where_its_card_is_higher_than_the_column() {
     );
 }
 
+/// The sections above fold in the frame after the result has come; the verdict stays in sight.
+#[test]
+fn the_verdict_is_in_sight_once_the_sections_above_have_folded() {
+    for height in [540.0, 640.0, 760.0] {
+        let mut window = window();
+        window.set_size(Vec2::new(1280.0, height));
+        click(&mut window, "Open the example pair");
+        finish(&mut window);
+        window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Enter);
+        window.run_steps(2);
+        finish(&mut window);
+        window.run_steps(40);
+        let texts = texts(&window);
+        let is_verdict = |text: &&Painted| text.text.ends_with("GOOD") && text.rect.height() > 18.0;
+        let verdict = texts.iter().find(is_verdict).expect("the verdict is drawn");
+        let column = verdict.clip.expand(0.5).y_range();
+        let is_seen = column.contains(verdict.rect.top()) && column.contains(verdict.rect.bottom());
+        assert!(is_seen, "{height}: {} of {}", verdict.rect, verdict.clip);
+    }
+}
+
 /// In the narrowest column every figure of the verdict stands beside its name.
 #[test]
 fn figures_of_the_verdict_take_one_line_each_in_the_smallest_window() {

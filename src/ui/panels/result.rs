@@ -48,17 +48,31 @@ pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
         held.hold(ui, first);
     });
-    // A new result comes into sight by itself.
-    let id = egui::Id::unique("stamp of the result in sight");
-    let seen: Option<Stamp> = ui.data(|data| data.get_temp(id));
-    if seen != Some(result.stamp) {
-        ui.data_mut(|data| data.insert_temp(id, result.stamp));
-        // Of a card that is higher than the column its beginning, with the verdict.
-        let bottom = (ui.cursor().top() + 3.0 * ROW).min(top + ui.clip_rect().height());
-        let x = ui.max_rect().x_range();
-        ui.scroll_to_rect(egui::Rect::from_x_y_ranges(x, top..=bottom), None);
-    }
+    into_sight(ui, result.stamp, top);
     matrix_ui(ui, state, commands);
+}
+
+/// In the first of so many frames the sections above a new result are as high as they were without it; then they
+/// have folded.
+const FRAMES_TO_SIGHT: u8 = 3;
+
+/// A new result, whose card begins at `top` and ends at the cursor, comes into sight by itself. At once: on its way to
+/// a place that the card no longer has, the column would pass it.
+fn into_sight(ui: &Ui, result: Stamp, top: f32) {
+    let id = egui::Id::unique("stamp of the result in sight");
+    let seen: Option<(Stamp, u8)> = ui.data(|data| data.get_temp(id));
+    let n_before = seen.map_or(0, |(seen, n)| if seen == result { n } else { 0 });
+    if n_before == FRAMES_TO_SIGHT {
+        return;
+    }
+    ui.data_mut(|data| data.insert_temp(id, (result, n_before + 1)));
+    let bottom = ui.cursor().top() + 3.0 * ROW;
+    // Of a card that is higher than the column its beginning, with the verdict.
+    let is_higher = bottom - top > ui.clip_rect().height();
+    let align = is_higher.then_some(egui::Align::TOP);
+    let card = egui::Rect::from_x_y_ranges(ui.max_rect().x_range(), top..=bottom);
+    ui.scroll_to_rect_animation(card, align, egui::style::ScrollAnimation::none());
+    ui.ctx().request_repaint();
 }
 
 /// A pose made by hand is worth copying too. It stands below what the part is moved with, so that the first move
