@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::geometry::{Matrix3, Matrix4, MatrixError, Rotation, Similarity, Vector3};
+use crate::text::trimmed;
 
 /// Largest entry of |AᵀA/c² − I| that a pasted matrix may have; six written digits stay below it.
 const ORTHOGONALITY_TOLERANCE: f64 = 1e-4;
@@ -205,6 +206,22 @@ pub struct ParsedMatrix {
     pub layout: MatrixLayout,
     /// Doubts worth telling, one sentence each.
     pub notes: Vec<&'static str>,
+}
+
+impl ParsedMatrix {
+    /// What few poses do and nobody should overlook: `scale 2 · det +1`, `mirrored`; `None` for a pose that only
+    /// turns and shifts.
+    pub fn remark(&self) -> Option<String> {
+        let Similarity { scale, .. } = self.motion;
+        let scaled = ((scale - 1.0).abs() > ORTHOGONALITY_TOLERANCE)
+            .then(|| format!("scale {}", trimmed(scale, 6)));
+        match (scaled, self.motion.is_mirrored()) {
+            (Some(scaled), true) => Some(format!("{scaled} · mirrored")),
+            (Some(scaled), false) => Some(format!("{scaled} · det +1")),
+            (None, true) => Some("mirrored".to_owned()),
+            (None, false) => None,
+        }
+    }
 }
 
 /// Why a text holds no pose.
@@ -476,6 +493,23 @@ mod tests {
                 *form != MatrixForm::Json
             );
             assert_eq!(parse_matrix(&text).unwrap().motion, motion, "{form:?}");
+        }
+    }
+
+    #[test]
+    fn a_scale_and_a_mirror_are_remarked() {
+        for (text, remark) in [
+            ("1 0 0 5 0 1 0 6 0 0 1 7 0 0 0 1", None),
+            ("1.00001 0 0 5 0 1 0 6 0 0 1 7 0 0 0 1", None),
+            ("2 0 0 5 0 2 0 6 0 0 2 7 0 0 0 1", Some("scale 2 · det +1")),
+            ("-1 0 0 5 0 1 0 6 0 0 1 7 0 0 0 1", Some("mirrored")),
+            (
+                "-25.4 0 0 5 0 25.4 0 6 0 0 25.4 7 0 0 0 1",
+                Some("scale 25.4 · mirrored"),
+            ),
+        ] {
+            let parsed = parse_matrix(text).unwrap();
+            assert_eq!(parsed.remark().as_deref(), remark, "{text}");
         }
     }
 

@@ -172,7 +172,7 @@ fn the_numbers_of_a_pose_stay_within_the_column() {
             let edge = view.rect().left() - 12.0;
             for name in [
                 "Centre Z",
-                "Translation since loading, Z",
+                "Move of centre since loading, Z",
                 "Matrix to paste",
             ] {
                 let field = window.get_by_label(name).rect();
@@ -280,7 +280,7 @@ fn the_first_move_by_hand_shifts_nothing() {
     finish(&mut window);
     click(&mut window, "Move by hand");
     window.run_steps(4);
-    let field = "Translation since loading, X";
+    let field = "Move of centre since loading, X";
     let role = egui::accesskit::Role::SpinButton;
     let place = |window: &Window| window.get_by_role_and_label(role, field).rect();
     let before = place(&window);

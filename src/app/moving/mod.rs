@@ -269,7 +269,9 @@ fn paste(work: &mut Work<'_>, text: &str) {
     match parse_matrix(text) {
         Ok(parsed) => {
             work.commit_pose("Pasted pose", None, parsed.motion);
-            let understood = format!("pasted: {}", parsed.layout.label());
+            let remark = parsed.remark();
+            let remark = remark.map_or_else(String::new, |remark| format!(", {remark}"));
+            let understood = format!("pasted: {}{remark}", parsed.layout.label());
             work.log_at(NoticeLevel::Success, LogStep::Move, None, understood, None);
             for note in parsed.notes {
                 work.log_at(NoticeLevel::Note, LogStep::Move, None, note, None);

@@ -8,10 +8,10 @@ use crate::app::{
     Action, AppState, Axis, AxisFrame, Command, MoveCommand, turns_deg, with_turns_deg,
 };
 use crate::geometry::Similarity;
-use crate::report::parse_matrix;
+use crate::report::{ParsedMatrix, parse_matrix};
 use crate::role::Role;
 use crate::text::{fixed, trimmed};
-use crate::ui::theme::{ROW, UNIT};
+use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::typed::{Takes, refusal, told_field};
 use crate::ui::widgets::{
     Look, action_button, caption, chip, form_row, plain_action, set_draft, text_field,
@@ -160,19 +160,17 @@ fn position_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let moved: [f64; 3] = (center - pivot).into();
     let lengths = state.lengths();
     let unit = lengths.suffix();
-    for (name, what, values) in [
-        ("Centre", "Centre", at),
-        ("Translation", "Translation since loading,", moved),
-    ] {
+    for (row, values) in [(CENTER, at), (CENTER_MOVE, moved)] {
         if let Some((axis, by, value)) = fields_ui(
             ui,
-            (name, what),
+            &row,
             values,
             |name| Takes::length(name, lengths, MOVES),
             unit,
         ) {
             let mut crash_from_stamped: Similarity = pose;
             crash_from_stamped.translation[axis.index()] += by;
+            let name = row.spoken.trim_end_matches(SINCE_LOADING);
             let name = format!("{name} {} {}{unit}", axis.letter(), fixed(value, 3));
             commands.push(set_pose(crash_from_stamped, name));
         }
@@ -183,7 +181,7 @@ fn position_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     };
     if let Some((axis, by, value)) = fields_ui(
         ui,
-        ("Rotation", "Rotation since loading,"),
+        &ROTATION,
         turns,
         |name| Takes::number(name, "°", MOVES),
         "°",
@@ -204,17 +202,41 @@ fn set_pose(crash_from_stamped: Similarity, name: String) -> Command {
     .into()
 }
 
+/// What a row of three numbers is of.
+struct Three {
+    label: &'static str,
+    spoken: &'static str,
+    help: &'static str,
+}
+
+const SINCE_LOADING: &str = " since loading,";
+const CENTER: Three = Three {
+    label: "Centre",
+    spoken: "Centre",
+    help: "In the axes and the unit of the crash part",
+};
+const CENTER_MOVE: Three = Three {
+    label: "Moved by",
+    spoken: "Move of centre since loading,",
+    help: "In the axes and the unit of the crash part; t of the matrix is the move of the origin",
+};
+const ROTATION: Three = Three {
+    label: "Rotation",
+    spoken: "Rotation since loading,",
+    help: "In degrees, about x, then y, then z of the crash part",
+};
+
 /// Three numbers in a row; the axis that was typed at, by how much it changed, and its new value.
 fn fields_ui(
     ui: &mut Ui,
-    (label, spoken): (&str, &str),
+    row: &Three,
     values: [f64; 3],
     takes: impl Fn(&str) -> Takes<'_>,
     unit: &str,
 ) -> Option<(Axis, f64, f64)> {
     let mut typed = None;
     let mut refused = None;
-    form_row(ui, label, LABEL, |ui| {
+    form_row(ui, row.label, LABEL, |ui| {
         tighten(ui);
         ui.style_mut().drag_value_text_style = TextStyle::Small;
         let width = (ui.available_width() - 8.0) / 3.0;
@@ -226,7 +248,7 @@ fn fields_ui(
             let before = if before.abs() < 5e-4 { 0.0 } else { before };
             let mut value = before;
             // Three have no room for their unit.
-            let name = format!("{spoken} {}", axis.letter());
+            let name = format!("{} {}", row.spoken, axis.letter());
             let takes = takes(&name);
             let decimals = fitting_decimals(ui, before, width - 2.0 * PADDING);
             let field = takes
@@ -241,7 +263,8 @@ fn fields_ui(
             if response.changed() && is_other {
                 typed = Some((axis, value - before, value));
             }
-            response.on_hover_text(format!("{name}: {}{unit}", trimmed(before, 9)));
+            let value = trimmed(before, 9);
+            response.on_hover_text(format!("{name}: {value}{unit}\n{}", row.help));
         }
     });
     refusal(ui, refused);
@@ -278,9 +301,13 @@ fn paste_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
         .font(egui::TextStyle::Monospace);
     text_field(ui, field).accessible_name("Matrix to paste");
     let read = (!text.trim().is_empty()).then(|| parse_matrix(&text));
+    let remark = read.iter().flatten().find_map(ParsedMatrix::remark);
     let understood = match &read {
         None => "moves stamped onto crash".to_owned(),
-        Some(Ok(parsed)) => format!("stamped onto crash: {}", parsed.layout.label()),
+        Some(Ok(parsed)) => {
+            let first = remark.as_deref().unwrap_or("stamped onto crash");
+            format!("{first}: {}", parsed.layout.label())
+        }
         Some(Err(error)) => format!("⚠ {error}"),
     };
     ui.horizontal(|ui| {
@@ -290,7 +317,12 @@ fn paste_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
             commands.push(MoveCommand::Paste(std::mem::take(&mut text)).into());
         }
         ui.add_space(UNIT);
-        let color = crate::ui::theme::Palette::of(ui).secondary;
+        let palette = Palette::of(ui);
+        let color = if remark.is_some() {
+            palette.check
+        } else {
+            palette.secondary
+        };
         let understood = egui::RichText::new(understood).small().color(color);
         ui.add(egui::Label::new(understood).wrap());
     });
