@@ -484,6 +484,25 @@ fn the_verdict_is_in_sight_once_the_sections_above_have_folded() {
     }
 }
 
+/// The shift is seen whole below a rotation that scrolls.
+#[test]
+fn the_matrix_shows_its_shift_without_scrolling() {
+    let mut window = matched();
+    window.set_size(Vec2::new(1280.0, 1600.0));
+    window.run_steps(4);
+    click(&mut window, "Matrix, stamped → crash");
+    window.run_steps(8);
+    let pose = *window.state().state().document.crash_from_stamped();
+    let texts = texts(&window);
+    for shift in pose.translation.iter() {
+        let digits = number(*shift);
+        let is_whole = |text: &Painted| {
+            text.text.trim() == digits && text.clip.expand(0.5).contains_rect(text.rect)
+        };
+        assert!(texts.iter().any(is_whole), "{digits}");
+    }
+}
+
 /// In the narrowest column every figure of the verdict stands beside its name.
 #[test]
 fn figures_of_the_verdict_take_one_line_each_in_the_smallest_window() {

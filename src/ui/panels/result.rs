@@ -3,7 +3,7 @@
 use egui::{Button, RichText, Ui, vec2};
 
 use super::explain;
-use crate::app::{Action, AppState, Command, ExportCommand, MatchCommand, MatchResult, Section};
+use crate::app::{Action, AppState, Axis, Command, ExportCommand, MatchCommand, MatchResult, Section};
 use crate::assess::{Ambiguity, Coverage, OneSided, Reason};
 use crate::jobs::Stamp;
 use crate::registration::{group_starts, limits};
@@ -429,32 +429,50 @@ fn matrix_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         .id_salt("matrix")
         .show_unindented(ui, |ui| {
             caption(ui, "p_crash = R · p_stamped + t, column vectors");
-            ui.scope(|ui| grid_ui(ui, &pose.to_rows()));
+            grid_ui(ui, &pose.to_rows());
             moved_ui(ui, state);
         });
 }
 
-/// Every digit, in columns that line up; it scrolls sideways rather than being rounded.
+/// Every digit. The shift has lines of its own, so that it is seen at once; a rotation wider than the column scrolls
+/// sideways rather than being rounded.
 fn grid_ui(ui: &mut Ui, rows: &[[f64; 4]; 4]) {
-    // The bar has a strip of its own, so that no digits lie under it.
-    ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
-    egui::ScrollArea::horizontal()
-        .id_salt("matrix digits")
-        .show(ui, |ui| {
-            egui::Grid::new("matrix grid")
-                .spacing(vec2(12.0, 2.0))
-                .show(ui, |ui| {
-                    for row in rows {
-                        for value in row {
-                            let text = RichText::new(format!("{:>20}", number(*value)))
-                                .monospace()
-                                .size(10.5);
-                            ui.add(egui::Label::new(text).selectable(true));
+    let lines = &rows[..3];
+    ui.scope(|ui| {
+        // The bar has a strip of its own, so that no digits lie under it.
+        ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
+        egui::ScrollArea::horizontal()
+            .id_salt("matrix digits")
+            .show(ui, |ui| {
+                digits_grid(ui, "rotation grid", |ui| {
+                    for row in lines {
+                        for value in &row[..3] {
+                            digits(ui, *value);
                         }
                         ui.end_row();
                     }
                 });
-        });
+            });
+    });
+    digits_grid(ui, "translation grid", |ui| {
+        for (axis, row) in Axis::ALL.into_iter().zip(lines) {
+            caption(ui, format!("t {}", axis.letter()));
+            digits(ui, row[3]);
+            ui.end_row();
+        }
+    });
+}
+
+fn digits_grid(ui: &mut Ui, name: &str, rows: impl FnOnce(&mut Ui)) {
+    egui::Grid::new(name)
+        .spacing(vec2(12.0, 2.0))
+        .min_row_height(0.0)
+        .show(ui, rows);
+}
+
+fn digits(ui: &mut Ui, value: f64) {
+    let text = RichText::new(format!("{:>20}", number(value)));
+    ui.add(egui::Label::new(text.monospace().size(10.5)).selectable(true));
 }
 
 /// What people expect of a translation: how far the part's centre goes, and how much it turns.
