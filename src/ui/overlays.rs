@@ -8,7 +8,7 @@ use super::palette::{self, palette_ui};
 use super::picture_options::picture_ui;
 use super::project_dialogs::{missing_ui, unsaved_ui};
 use super::theme::{Palette, UNIT};
-use super::typed::{Takes, refusal, told_field};
+use super::typed::{Takes, told_field};
 use super::widgets::{caption, chip, form_row, level_color, paragraph, secondary};
 use crate::app::{
     AppState, Command, Dialog, ExportCommand, MouseScheme, Notice, NoticeCommand, NoticeLevel,
@@ -131,18 +131,16 @@ fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             ui.checkbox(&mut settings.keeps_work, "Keep the work in case of a crash")
                 .on_hover_text("After each step, in the folder of the program's data");
         });
-        let refused = form_row(ui, "Read limit", LABEL, |ui| {
+        form_row(ui, "Read limit", LABEL, |ui| {
             let takes = Takes::number("Read limit", " GiB", Settings::READ_LIMITS);
             let before = settings.read_limit;
             let field = takes.field(&mut settings.read_limit).speed(0.1);
-            let (field, refused) = told_field(ui, "Read limit", before, field, |text| takes.read(text));
+            let field = told_field(ui, "Read limit", before, field, |text| takes.read(text));
             field.on_hover_text(
                 "Largest file that is read, unpacked and with all its included files. Reload a file \
                  after raising it.",
             );
-            refused
         });
-        refusal(ui, refused);
     });
     if settings != state.settings {
         commands.push(Command::Settings(Box::new(settings)));

@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use super::theme::UNIT;
-use super::typed::{Takes, refusal, told_field};
+use super::typed::{Takes, told_field};
 use super::widgets::{caption, chip, form_row, large_button};
 use crate::app::{
     AppState, Command, ExportCommand, PictureChoice, PictureSize, PictureWindows, Settings,
@@ -64,7 +64,6 @@ fn size_ui(ui: &mut Ui, choice: &mut PictureChoice) {
                 }
             }
         });
-        let mut refused = None;
         form_row(ui, "Custom size", LABEL, |ui| {
             let mut sides = match choice.size {
                 PictureSize::Pixels(sides) => sides,
@@ -79,14 +78,12 @@ fn size_ui(ui: &mut Ui, choice: &mut PictureChoice) {
                 let takes = Takes::count(name, least as usize..=most as usize);
                 let before = f64::from(*side);
                 let field = takes.field(side).speed(8.0);
-                let told = told_field(ui, name, before, field, |text| takes.read(text));
-                refused = refused.take().or(told.1);
+                told_field(ui, name, before, field, |text| takes.read(text));
             }
             caption(ui, "pixels");
             if sides != before {
                 choice.size = PictureSize::Pixels(sides);
             }
         });
-        refusal(ui, refused);
     });
 }

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::ops::RangeInclusive;
 
-use egui::{DragValue, Response, RichText, Stroke, Ui, emath::Numeric};
+use egui::{DragValue, Response, RichText, Stroke, Ui, emath::Numeric, vec2};
 
 use super::theme::Palette;
 use crate::app::{typed_count, typed_length, typed_number};
@@ -111,18 +111,20 @@ fn bound(value: f64) -> String {
 struct Refused {
     why: String,
     at: f64,
+    /// The pointer was pressed since, and what the reason lay over is seen again.
+    is_read: bool,
 }
 
 /// Adds a field of a value that is read when it is left: a text that `read` refuses changes nothing and frames the
-/// field until it is edited again, the value changes, or Escape is pressed. With the response comes why the text
-/// was refused.
+/// field until it is edited again, the value changes, or Escape is pressed. Why it was refused is said below the field,
+/// over what stands there, until the pointer is pressed, and after that where the field is pointed at.
 pub fn told_field(
     ui: &mut Ui,
     name: &str,
     value: f64,
     field: DragValue<'_>,
     read: impl Fn(&str) -> Result<f64, String>,
-) -> (Response, Option<String>) {
+) -> Response {
     let refused: RefCell<Option<Option<String>>> = RefCell::default();
     let read = |text: &str| {
         let value = read(text);
@@ -132,29 +134,74 @@ pub fn told_field(
     let field = field.update_while_editing(false).custom_parser(read);
     // A field with a unit is named after the unit otherwise.
     let response = ui.add(field).accessible_name(name);
-    let id = response.id.with("refused");
+    let id = refused_id(&response);
     let known: Option<Refused> = ui.data(|data| data.get_temp(id)).flatten();
+    let is_pressed = ui.input(|input| input.pointer.any_pressed());
     let is_over = response.has_focus()
         || response.changed()
         || ui.input(|input| input.key_pressed(egui::Key::Escape))
         || known.as_ref().is_some_and(|known| known.at != value);
     let now = match refused.take() {
-        Some(why) => why.map(|why| Refused { why, at: value }),
+        Some(why) => why.map(|why| Refused {
+            why,
+            at: value,
+            is_read: false,
+        }),
         None if is_over => None,
-        None => known.clone(),
+        None => known.clone().map(|known| Refused {
+            is_read: known.is_read || is_pressed,
+            ..known
+        }),
     };
     if now != known {
         ui.data_mut(|data| data.insert_temp(id, now.clone()));
     }
-    if now.is_some() {
-        let frame = Stroke::new(1.5, Palette::of(ui).poor);
-        let inside = egui::StrokeKind::Inside;
-        ui.painter().rect_stroke(response.rect, 4.0, frame, inside);
+    let Some(now) = now else {
+        return response;
+    };
+    let frame = Stroke::new(1.5, Palette::of(ui).poor);
+    let inside = egui::StrokeKind::Inside;
+    ui.painter().rect_stroke(response.rect, 4.0, frame, inside);
+    if now.is_read {
+        return response.on_hover_text(now.why);
     }
-    (response, now.map(|now| now.why))
+    tell(ui, &response, now.why);
+    response
 }
 
-/// Why a text was refused, below its field.
+fn refused_id(field: &Response) -> egui::Id {
+    field.id.with("refused")
+}
+
+/// Whether the text that was typed last into a [`told_field`] was refused.
+pub fn is_refused(ui: &Ui, field: &Response) -> bool {
+    let known: Option<Refused> = ui.data(|data| data.get_temp(refused_id(field))).flatten();
+    known.is_some()
+}
+
+/// Widest reason below a field.
+const WIDEST: f32 = 280.0;
+
+/// Why a text was refused, below its field. It takes no room, so that nothing moves, and no clicks.
+fn tell(ui: &Ui, field: &Response, why: String) {
+    if !ui.clip_rect().intersects(field.rect) {
+        return;
+    }
+    egui::Area::new(refused_id(field))
+        .order(egui::Order::Tooltip)
+        .fixed_pos(field.rect.left_bottom() + vec2(0.0, 2.0))
+        .interactable(false)
+        .show(ui.ctx(), |ui| {
+            egui::Frame::popup(ui.style())
+                .inner_margin(egui::Margin::symmetric(6, 3))
+                .show(ui, |ui| {
+                    ui.set_max_width(WIDEST);
+                    refusal(ui, Some(why));
+                });
+        });
+}
+
+/// Why something was refused.
 pub fn refusal(ui: &mut Ui, why: Option<String>) {
     if let Some(why) = why {
         let text = RichText::new(why).small().color(Palette::of(ui).poor);

@@ -7,6 +7,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use shapematch::app::{Action, BottomTab, Command, MoveCommand, NoticeCommand, Theme, ViewCommand};
 use shapematch::geometry::camera::ScreenSize;
+use shapematch::report::number;
 use shapematch::role::Role;
 use shapematch::text::capital;
 use shapematch::ui::Shell;

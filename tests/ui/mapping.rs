@@ -75,6 +75,9 @@ fn a_mapping_is_made_looked_at_and_followed_to_its_worst_place() {
     click(&mut window, "Difference");
     finish(&mut window);
     assert!(window.query_by_label(line).is_none(), "{line}");
+    // What stands below its buttons does not move up.
+    let row = "Mapped and stamped in one window";
+    assert!(window.query_by_label(row).is_some(), "{row}");
     click(&mut window, "Values");
     finish(&mut window);
     wipe(&mut window);

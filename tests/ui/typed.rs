@@ -176,12 +176,18 @@ fn a_number_that_cannot_be_is_refused_where_it_is_typed() {
     click(&mut window, "2 Reduce");
     window.run_steps(4);
     let before = level(&window);
+    let below = |window: &Window| {
+        let row = window.get_by_label("Reduce both parts").rect();
+        (window.get_by_label("3 Match").rect().top() - row.top()).round()
+    };
+    let place = below(&window);
     for (typed, why) in [
         ("a few", "“a few” is not a whole number."),
         ("0", "Max triangles: 4 to 50,000,000."),
     ] {
         type_into(&mut window, "Max triangles", typed);
         assert!(window.query_by_label(why).is_some(), "{why}");
+        assert_eq!(below(&window), place, "nothing below moves");
         finish(&mut window);
         assert_eq!(level(&window), before, "{typed}");
     }
@@ -255,6 +261,11 @@ fn a_refusal_goes_when_the_field_is_edited_or_its_value_changes() {
     window.key_press(egui::Key::Escape);
     window.run_steps(2);
     assert!(!is_told(&window), "Escape");
+
+    refuse(&mut window);
+    window.get_by_label("Reduce both parts").click();
+    window.run_steps(2);
+    assert!(!is_told(&window), "the pointer was pressed");
 
     refuse(&mut window);
     let settings = Settings {

@@ -12,7 +12,7 @@ use crate::report::{ParsedMatrix, parse_matrix};
 use crate::role::Role;
 use crate::text::{fixed, trimmed};
 use crate::ui::theme::{Palette, ROW, UNIT};
-use crate::ui::typed::{Takes, refusal, told_field};
+use crate::ui::typed::{Takes, told_field};
 use crate::ui::widgets::{
     Look, action_button, caption, chip, form_row, plain_action, set_draft, text_field,
 };
@@ -82,7 +82,7 @@ fn steps_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let mut value: f64 =
             ui.data(|data| data.get_temp(id))
                 .unwrap_or(if is_turn { 15.0 } else { 10.0 });
-        let refused = form_row(ui, name, LABEL, |ui| {
+        form_row(ui, name, LABEL, |ui| {
             tighten(ui);
             let (takes, speed) = if is_turn {
                 (Takes::number(name, unit, MOVES), 1.0)
@@ -96,7 +96,7 @@ fn steps_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 .max_decimals(6)
                 .min_size(vec2(68.0, ROW));
             let spoken = format!("{name} by");
-            let (_, refused) = told_field(ui, &spoken, before, field, |text| takes.read(text));
+            told_field(ui, &spoken, before, field, |text| takes.read(text));
             for axis in Axis::ALL {
                 let label = format!("{} {}", if value < 0.0 { "−" } else { "+" }, axis.letter());
                 let spoken = format!("{name} by {value}{unit} on {}", axis.letter());
@@ -120,9 +120,7 @@ fn steps_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                     commands.push(command.into());
                 }
             }
-            refused
         });
-        refusal(ui, refused);
         ui.data_mut(|data| data.insert_temp(id, value));
     }
 }
@@ -235,7 +233,6 @@ fn fields_ui(
     unit: &str,
 ) -> Option<(Axis, f64, f64)> {
     let mut typed = None;
-    let mut refused = None;
     form_row(ui, row.label, LABEL, |ui| {
         tighten(ui);
         ui.style_mut().drag_value_text_style = TextStyle::Small;
@@ -256,8 +253,7 @@ fn fields_ui(
                 .fixed_decimals(decimals)
                 .speed(0.5)
                 .min_size(vec2(width, ROW));
-            let (response, why) = told_field(ui, &name, before, field, |text| takes.read(text));
-            refused = refused.take().or(why);
+            let response = told_field(ui, &name, before, field, |text| takes.read(text));
             // A field that was only looked into holds the value as it is shown.
             let is_other = fixed(value, decimals) != fixed(before, decimals);
             if response.changed() && is_other {
@@ -267,7 +263,6 @@ fn fields_ui(
             response.on_hover_text(format!("{name}: {value}{unit}\n{}", row.help));
         }
     });
-    refusal(ui, refused);
     typed
 }
 

@@ -335,8 +335,11 @@ fn picture_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if let Some(display) = chosen {
         commands.push(ViewCommand::SetDisplay(Box::new(display)).into());
     }
-    if state.can_compare_mapped() {
-        compare_ui(ui, state, commands);
+    // Greyed rather than gone, so that what stands below stays under the pointer.
+    if state.is_mapping_apart() {
+        ui.add_enabled_ui(state.can_compare_mapped(), |ui| {
+            compare_ui(ui, state, commands);
+        });
     }
 }
 
@@ -358,9 +361,10 @@ fn compare_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
         let key = Action::Blink.row().shortcut();
         let key = key.map_or_else(String::new, |key| format!(" ({key})"));
-        blink.on_hover_text(format!(
-            "Hold to see the stamped part in the place of the mapped one{key}"
-        ));
+        let hold = format!("Hold to see the stamped part in the place of the mapped one{key}");
+        blink
+            .on_hover_text(hold)
+            .on_disabled_hover_text("The stamped part has no such picture: choose Values");
     });
 }
 

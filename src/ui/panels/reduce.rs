@@ -13,7 +13,7 @@ use crate::jobs::{JobKey, MeasuredLevel};
 use crate::role::{PerRole, Role};
 use crate::text::counted;
 use crate::ui::theme::{LABEL, Palette, ROW, UNIT};
-use crate::ui::typed::{Takes, refusal, told_field};
+use crate::ui::typed::{Takes, is_refused, told_field};
 use crate::ui::widgets::{
     Look, action_button, caption, chip, form_row, grouped, icon_button, paragraph, role_mark,
     short_count, square, tight,
@@ -72,7 +72,6 @@ const MAX_TRIANGLES: RangeInclusive<usize> = 4..=50_000_000;
 fn ceiling_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut settings: Settings = state.settings.clone();
     let mut is_entered = false;
-    let mut refused = None;
     form_row(ui, "Max triangles", LABEL, |ui| {
         let takes = Takes::count("Max triangles", MAX_TRIANGLES);
         let before = settings.max_triangles as f64;
@@ -81,11 +80,10 @@ fn ceiling_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             .speed(20.0)
             .custom_formatter(|n, _| grouped(n as usize))
             .min_size(vec2((ui.available_width() - CHOICE).clamp(56.0, 98.0), ROW));
-        let (field, why) = told_field(ui, "Max triangles", before, field, |text| takes.read(text));
+        let field = told_field(ui, "Max triangles", before, field, |text| takes.read(text));
         ui.spacing_mut().button_padding.x = 8.0;
         let is_left = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-        is_entered = is_left && why.is_none();
-        refused = why;
+        is_entered = is_left && !is_refused(ui, &field);
         let roles = settings.reduce_roles;
         for (label, name, chosen) in [
             ("■", "Reduce the crash part", PerRole::new(true, false)),
@@ -101,7 +99,6 @@ fn ceiling_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             }
         }
     });
-    refusal(ui, refused);
     let roles = settings.reduce_roles;
     let max_triangles = settings.max_triangles;
     if settings != state.settings {

@@ -15,7 +15,7 @@ use crate::text::{capital, fixed, sentence, vector, whole_percent};
 use crate::ui::panels::mapping::STALE;
 use crate::ui::panels::top_bar::copy_forms_ui;
 use crate::ui::theme::{Palette, ROW, UNIT};
-use crate::ui::typed::{Takes, refusal, told_field};
+use crate::ui::typed::{Takes, told_field};
 use crate::ui::widgets::{
     Look, action_tooltip, caption, card, chip, figure, figure_fits, paragraph, percent,
     plain_action, square, tight, told_button, verdict_color,
@@ -151,7 +151,6 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
     let assessment = &result.run.assessment;
     let lengths = state.lengths();
     let verdict = result.verdict();
-    let mut refused = None;
     ui.horizontal(|ui| {
         let verdict = (
             format!("{} {}", verdict.sign(), verdict.label()) + &pose_number(state, result),
@@ -169,11 +168,9 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
         // An alternative is told from the best pose, whatever the tolerance.
         if result.alternative.is_none() {
             let right = egui::Layout::right_to_left(egui::Align::Center);
-            let field = ui.with_layout(right, |ui| tolerance_ui(ui, state, result, commands));
-            refused = field.inner;
+            ui.with_layout(right, |ui| tolerance_ui(ui, state, result, commands));
         }
     });
-    refusal(ui, refused);
     if let Some(score_ratio) = score_ratio(result) {
         alternative_ui(ui, state, result, score_ratio);
         return;
@@ -211,21 +208,19 @@ const TOLERANCE_HELP: &str = "Shape tolerance: how far the shapes may differ bes
 /// Air between the verdict and the name of the tolerance.
 const AIR: f32 = 12.0;
 
-/// The tolerance of the verdict; another one gives a new verdict. From right to left. Says why
-/// a typed one was refused.
+/// The tolerance of the verdict; another one gives a new verdict. From right to left.
 fn tolerance_ui(
     ui: &mut Ui,
     state: &AppState,
     result: &MatchResult,
     commands: &mut Vec<Command>,
-) -> Option<String> {
+) {
     let (Some(setting), Some(shape)) = (
         setting("shape-tolerance"),
         result.run.assessment.shape.as_ref(),
     ) else {
-        return None;
+        return;
     };
-    let mut refused = None;
     let mut recipe = state.document.recipe.clone();
     let tolerance = &mut recipe.settings.shape_tolerance;
     let is_automatic = *tolerance == 0.0;
@@ -247,12 +242,11 @@ fn tolerance_ui(
         } else {
             field
         };
-        let (field, why) = told_field(ui, setting.label, before, field, |text| match text.trim() {
+        let field = told_field(ui, setting.label, before, field, |text| match text.trim() {
             // The automatic one.
             "" => Ok(0.0),
             text => takes.read(text),
         });
-        refused = why;
         if field.on_hover_text(TOLERANCE_HELP).changed() {
             *tolerance = shown;
         }
@@ -273,7 +267,6 @@ fn tolerance_ui(
     if recipe != state.document.recipe {
         commands.push(MatchCommand::SetRecipe(Box::new(recipe)).into());
     }
-    refused
 }
 
 /// How an alternative fits beside the best pose, and the statements that the best pose has too.

@@ -11,7 +11,7 @@ use crate::settings::{Domain, Setting, Unit, Value};
 use crate::text::{Lengths, capital};
 use crate::ui::focus;
 use crate::ui::theme::{Palette, ROW};
-use crate::ui::typed::{Takes, refusal, told_field};
+use crate::ui::typed::{Takes, told_field};
 use crate::ui::widgets::{caption, form_row, tight};
 
 /// Width of the column of labels.
@@ -98,7 +98,7 @@ pub fn setting_ui<R>(
     });
     let row = row.response.rect;
     if row.height() > 1.0 {
-        // A reason why a text is refused stands below the row.
+        // A second field may stand below the row.
         let middle = row.top() + row.height().min(ROW) / 2.0;
         let usual = setting.get(usual).filter(|usual| *usual != value);
         let right = row.left() + room;
@@ -193,19 +193,16 @@ fn value_ui<R>(ui: &mut Ui, state: &AppState, setting: &Setting<R>, value: &mut 
     }
 }
 
-/// A row with a field for a number, and below it why a typed text was refused.
+/// A row with a field for a number.
 fn typed_ui<R>(
     ui: &mut Ui,
     setting: &Setting<R>,
     (value, field): (f64, DragValue<'_>),
     read: impl Fn(&str) -> Result<f64, String>,
 ) {
-    let refused = form_row(ui, setting.label, LABEL, |ui| {
-        let (response, refused) = told_field(ui, setting.label, value, field, read);
-        response.on_hover_text(setting.help);
-        refused
+    form_row(ui, setting.label, LABEL, |ui| {
+        told_field(ui, setting.label, value, field, read).on_hover_text(setting.help);
     });
-    refusal(ui, refused);
 }
 
 /// A menu of choices.
@@ -261,12 +258,11 @@ fn floor_ui<R>(ui: &mut Ui, setting: &Setting<R>, floor: &mut Floor, lengths: Le
     // Beside the choice it would lie below the help of the row.
     if let Floor::Length(length) = floor {
         let takes = Takes::length(FLOOR_LENGTH, lengths, limits::LENGTH);
-        let refused = form_row(ui, "", LABEL, |ui| {
+        form_row(ui, "", LABEL, |ui| {
             let before = *length;
             let field = takes.field(length).speed(0.01).max_decimals(6);
-            told_field(ui, FLOOR_LENGTH, before, field, |text| takes.read(text)).1
+            told_field(ui, FLOOR_LENGTH, before, field, |text| takes.read(text));
         });
-        refusal(ui, refused);
     }
 }
 
@@ -307,17 +303,17 @@ fn limit_ui<R>(ui: &mut Ui, state: &AppState, setting: &Setting<R>, limit: &mut 
         return;
     }
     let mut is_on = limit.is_some();
-    let refused = ui.horizontal(|ui| {
+    ui.horizontal(|ui| {
         ui.checkbox(&mut is_on, "Reduce search to")
             .on_hover_text(setting.help);
         if is_on != limit.is_some() {
             *limit = is_on.then_some(USUAL_LEVEL);
         }
         let takes = Takes::count(setting.label, LEVELS);
-        let limit = limit.as_mut()?;
-        let before = *limit as f64;
-        let field = takes.field(limit).speed(20.0);
-        told_field(ui, setting.label, before, field, |text| takes.read(text)).1
+        if let Some(limit) = limit {
+            let before = *limit as f64;
+            let field = takes.field(limit).speed(20.0);
+            told_field(ui, setting.label, before, field, |text| takes.read(text));
+        }
     });
-    refusal(ui, refused.inner);
 }

@@ -13,7 +13,7 @@ use crate::report::distances::{COMPARED_P95, COMPARED_RMS};
 use crate::role::Role;
 use crate::text::capital;
 use crate::ui::theme::{Palette, color};
-use crate::ui::typed::{Takes, refusal, told_field};
+use crate::ui::typed::{Takes, told_field};
 use crate::ui::viewport::overlay::Overlay;
 use crate::ui::widgets::{length, paint_role_mark, percent, signed};
 
@@ -50,20 +50,16 @@ pub(super) fn show(
     if room.is_full {
         side_words(ui, over, "on the crash normal side", true);
     }
-    let upper = limit_field(ui, over, scale, Limit::Upper, &mut coloring);
+    limit_field(ui, over, scale, Limit::Upper, &mut coloring);
     bars(ui, over, (scale, stats), room.bar, &mut coloring);
-    let lower = limit_field(ui, over, scale, Limit::Lower, &mut coloring);
+    limit_field(ui, over, scale, Limit::Lower, &mut coloring);
     if room.is_full {
         side_words(ui, over, "opposite", false);
     }
     ui.add_space(2.0);
-    let band = tolerance(ui, over, scale, stats, &mut coloring);
+    tolerance(ui, over, scale, stats, &mut coloring);
     if room.is_full {
         numbers(ui, over, stats);
-    }
-    // At the foot, so that fields and bars stay where they are.
-    for refused in [upper, lower, band] {
-        refusal(ui, refused);
     }
     if coloring != before {
         menu::set(over, coloring, commands);
@@ -224,20 +220,20 @@ impl Limit {
     }
 }
 
-/// The value at an end of the bar, typed or dragged; says why a typed one was refused.
+/// The value at an end of the bar, typed or dragged.
 fn limit_field(
     ui: &mut Ui,
     over: &Overlay<'_>,
     scale: &ColorScale,
     limit: Limit,
     coloring: &mut Coloring,
-) -> Option<String> {
+) {
     let mut value = match limit {
         Limit::Upper => scale.max,
         Limit::Lower => scale.min,
     };
     let before = value;
-    let row = ui.horizontal(|ui| {
+    ui.horizontal(|ui| {
         ui.add_space(HISTOGRAM - 2.0);
         let takes = Takes::number(limit.name(), "", -1e9..=1e9);
         let field = takes
@@ -245,7 +241,7 @@ fn limit_field(
             .speed(0.01 * scale.max.abs().max(scale.min.abs()))
             .custom_formatter(|value, _| signed(value));
         let is_alone = ui.input(|i| i.modifiers.alt);
-        let (response, refused) = told_field(ui, limit.name(), before, field, |text| {
+        let response = told_field(ui, limit.name(), before, field, |text| {
             let value = takes.read(text)?;
             limits_with(scale, limit, value, is_alone)?;
             Ok(value)
@@ -260,9 +256,7 @@ fn limit_field(
             coloring.limits = Some(limits);
         }
         response.on_hover_text("Drag or type; both ends move together unless Alt is held");
-        refused
     });
-    row.inner
 }
 
 /// The limits with a new value at one end, which the other end mirrors while they are symmetric, unless the end
@@ -472,15 +466,15 @@ fn drag_tolerance(
     }
 }
 
-/// How much area lies within the neutral band, whose width can be typed; says why a typed one was refused.
+/// How much area lies within the neutral band, whose width can be typed.
 fn tolerance(
     ui: &mut Ui,
     over: &Overlay<'_>,
     scale: &ColorScale,
     stats: &DeviationStats,
     coloring: &mut Coloring,
-) -> Option<String> {
-    let row = ui.horizontal(|ui| {
+) {
+    ui.horizontal(|ui| {
         let inside = percent(stats.share_inside(scale.tolerance));
         ui.label(RichText::new(inside).size(15.0).color(over.frame.look.text));
         ui.label(RichText::new("within ±").size(12.0));
@@ -491,7 +485,7 @@ fn tolerance(
             .field(&mut value)
             .speed(0.01 * scale.max.abs())
             .custom_formatter(|value, _| length(value));
-        let (response, refused) = told_field(ui, "Tolerance", scale.tolerance, field, |text| {
+        let response = told_field(ui, "Tolerance", scale.tolerance, field, |text| {
             takes.read(text)
         });
         response.widget_info(|| {
@@ -502,9 +496,7 @@ fn tolerance(
             coloring.tolerance = Some(value);
         }
         ui.label(RichText::new(over.frame.state.document.unit_suffix()).size(12.0));
-        refused
     });
-    row.inner
 }
 
 /// Says that the colours are those of the reduced part, where the numbers are those of the full one.
