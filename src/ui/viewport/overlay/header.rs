@@ -8,11 +8,11 @@ use egui::{
 };
 
 use super::{MARGIN, Overlay, grouped, legend};
-use crate::app::{AppState, Command, Preview, ViewCommand, short_number};
+use crate::app::{AppState, Command, PoseOverlap, Preview, ViewCommand, short_number};
 use crate::geometry::camera::StandardView;
 use crate::report::start_kind_words;
 use crate::role::Role;
-use crate::text::{counted, whole_percent};
+use crate::text::{Lengths, counted, whole_percent};
 use crate::ui::focus::is_ringed;
 use crate::ui::viewport::visible_parts::visible_parts;
 
@@ -284,11 +284,14 @@ fn lasting_notes(over: &Overlay<'_>) -> Vec<String> {
     notes
 }
 
-/// What the stripes in the picture say, where both sheets are drawn.
+/// What the stripes in the picture say, where both sheets are drawn and are not known to lie apart.
 fn stripes(over: &Overlay<'_>) -> Option<String> {
     let scene = &over.frame.picture.scene;
     scene.coinciding()?;
-    let distance = scene.coincidence?;
+    let known = over.frame.state.current_overlap();
+    let distance = scene
+        .coincidence
+        .filter(|_| known.is_none_or(|known| known.overlap > 0.0))?;
     let unit = over.frame.state.document.unit_suffix();
     Some(format!(
         "striped: both within {}{unit}",
@@ -297,26 +300,30 @@ fn stripes(over: &Overlay<'_>) -> Option<String> {
 }
 
 /// How warm the pose is, with the change since the last one. Not where the verdict states the overlap: this one is
-/// of few points.
+/// of few points; nor for parts that lie apart as they were loaded, once a match or a move is undone.
 fn overlap(state: &AppState) -> Option<String> {
     let is_measured = state.document.current_result().is_some();
     let known = state
         .current_overlap()
         .filter(|_| !is_measured && !state.is_preview())?;
+    (known.overlap > 0.0 || state.document.has_pose()).then(|| overlap_words(known, state.lengths()))
+}
+
+/// `95 % of crash within 4.50 mm (−5)`: short enough for a narrow window.
+fn overlap_words(known: &PoseOverlap, lengths: Lengths) -> String {
     let mut text = format!(
-        "overlap of {} {} within {}",
-        known.of.word(),
+        "{} of {} within {}",
         whole_percent(known.overlap),
-        state.lengths().of(known.limit)
+        known.of.word(),
+        lengths.of(known.limit)
     );
     // Less than half a percent is no change to speak of.
     if let Some(change) = known.change.filter(|change| change.abs() >= 0.005) {
         // Without an arrow: a triangle stands for the stamped part.
         let sign = if change > 0.0 { "+" } else { "−" };
-        let points = (100.0 * change.abs()).round() as usize;
-        text += &format!(" ({sign}{})", counted(points, "point"));
+        text += &format!(" ({sign}{})", (100.0 * change.abs()).round());
     }
-    Some(text)
+    text
 }
 
 /// What is shown instead of the real pose.
@@ -417,4 +424,28 @@ pub(super) fn buttons(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Comman
     let used = row.response.rect.expand(2.0);
     let ground = Shape::rect_filled(used, CornerRadius::same(6), over.frame.look.plate);
     ui.painter().set(plate, ground);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::jobs::Stamp;
+    use crate::units::LengthUnit;
+
+    #[test]
+    fn the_overlap_is_said_in_a_few_words() {
+        let mut known = PoseOverlap {
+            stamp: Stamp::default(),
+            of: Role::Crash,
+            overlap: 0.95,
+            limit: 4.5,
+            change: Some(-0.05),
+        };
+        let lengths = Lengths::new(Some(LengthUnit::Millimeter));
+        let words = overlap_words(&known, lengths);
+        assert_eq!(words, "95 % of crash within 4.50 mm (−5)");
+        known.change = Some(0.001);
+        let words = overlap_words(&known, lengths);
+        assert_eq!(words, "95 % of crash within 4.50 mm");
+    }
 }
