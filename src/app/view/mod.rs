@@ -167,11 +167,15 @@ impl ViewRoom {
                 top,
                 bottom,
                 corner: [width, height],
+                beside: [from_left, from_right],
+                above,
             } = room.covered;
-            [room.aspect.ln(), left, right, top, bottom, width, height]
+            let edges = [left, right, top, bottom, width, height];
+            let legend = [from_left, from_right, above];
+            edges.into_iter().chain(legend).chain([room.aspect.ln()])
         };
-        let pairs = sides(self).into_iter().zip(sides(other));
-        pairs.into_iter().any(|(a, b)| (a - b).abs() > 0.01)
+        let mut pairs = sides(self).zip(sides(other));
+        pairs.any(|(a, b)| (a - b).abs() > 0.01)
     }
 
     /// The room that is free in both of two windows that show one camera's picture.

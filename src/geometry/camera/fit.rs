@@ -22,6 +22,11 @@ pub struct Covered {
     /// Shares of the width and of the height of what lies in the lower left corner only. A scene that
     /// leaves the corner alone anyway is fitted as if nothing were there.
     pub corner: [f64; 2],
+    /// What a legend at an edge covers is left free as a strip beside it, of which these are the shares of the width
+    /// at the left and at the right, …
+    pub beside: [f64; 2],
+    /// … or as one above its foot, of which this is the share of the height: whichever leaves the scene larger.
+    pub above: f64,
 }
 
 impl Covered {
@@ -33,7 +38,35 @@ impl Covered {
             top: self.top.max(other.top),
             bottom: self.bottom.max(other.bottom),
             corner: [0, 1].map(|k| self.corner[k].max(other.corner[k])),
+            beside: [0, 1].map(|k| self.beside[k].max(other.beside[k])),
+            above: self.above.max(other.above),
         }
+    }
+
+    /// Two ways to leave a legend free: the strip beside it, or the one above its foot. One and the same without it.
+    fn beside_legend(&self) -> [Self; 2] {
+        let [left, right] = self.beside;
+        let none = Self {
+            beside: [0.0; 2],
+            above: 0.0,
+            ..*self
+        };
+        let beside = Self {
+            left: self.left.max(left),
+            right: self.right.max(right),
+            ..none
+        };
+        let above = Self {
+            top: self.top.max(self.above),
+            ..none
+        };
+        [beside, above]
+    }
+
+    /// True if so much is covered that a scene does not stay clear of all of it.
+    fn is_too_much(&self) -> bool {
+        let most = (self.left + self.right).max(self.top + self.bottom);
+        most > 1.0 - LEAST_FREE
     }
 
     /// Two ways to keep out of the corner: the whole strip beside it, or the one below it.
@@ -101,6 +134,19 @@ impl Camera {
 
     /// As [`Camera::fit_to_points`], into the rectangle of the picture over which nothing lies. O(points).
     pub fn fit_to_points_within(&mut self, points: &[Point3], aspect: f64, covered: &Covered) {
+        let ways = covered.beside_legend();
+        let fitted = ways.map(|covered| {
+            let mut camera = *self;
+            camera.fit_beside_corner(points, aspect, &covered);
+            camera
+        });
+        let [beside, above] = ways.map(|covered| covered.is_too_much());
+        let is_larger = fitted[1].height < fitted[0].height;
+        let is_above = if beside == above { is_larger } else { beside };
+        *self = fitted[usize::from(is_above)];
+    }
+
+    fn fit_beside_corner(&mut self, points: &[Point3], aspect: f64, covered: &Covered) {
         self.fit_beside_edges(points, aspect, covered);
         if !self.shows_any_in_corner(points, aspect, covered.corner) {
             return;

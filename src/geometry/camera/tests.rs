@@ -189,7 +189,7 @@ fn fitting_keeps_clear_of_what_lies_over_the_picture() {
         right: 0.3,
         top: 0.15,
         bottom: 0.1,
-        corner: [0.0; 2],
+        ..Covered::default()
     };
     let free = [
         0.0,
@@ -227,6 +227,42 @@ fn fitting_keeps_clear_of_what_lies_over_the_picture() {
         "{}",
         camera.height
     );
+}
+
+#[test]
+fn a_legend_takes_the_strip_that_leaves_the_part_larger() {
+    // As high as it is wide, so that the strip above it is the smaller one.
+    let covered = Covered {
+        top: 0.1,
+        beside: [0.0, 0.42],
+        above: 0.4,
+        ..Covered::default()
+    };
+    let fitted = |size: [f64; 3], covered: &Covered| {
+        let bounds = Aabb::of_points(&[Point3::origin(), Point3::from(size)]);
+        let mut camera = Camera::default();
+        camera.set_standard_view(StandardView::Front);
+        camera.fit_to_points_within(&bounds.corners(), 1.0, covered);
+        camera
+    };
+    let side = Covered {
+        top: 0.1,
+        right: 0.42,
+        ..Covered::default()
+    };
+    let above = Covered {
+        top: 0.4,
+        ..Covered::default()
+    };
+    let (high, wide) = ([200.0, 1.0, 1000.0], [1000.0, 1.0, 200.0]);
+    assert_eq!(fitted(high, &covered), fitted(high, &side));
+    assert_eq!(fitted(wide, &covered), fitted(wide, &above));
+    // A strip that would leave too little is not taken, as long as the other one leaves enough.
+    let low = Covered {
+        above: 0.8,
+        ..covered
+    };
+    assert_eq!(fitted(wide, &low), fitted(wide, &side));
 }
 
 #[test]

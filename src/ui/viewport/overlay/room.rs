@@ -53,26 +53,16 @@ fn covered(over: &Overlay<'_>, legend: Option<Rect>, foot: Option<f32>) -> Cover
     covered
 }
 
-/// Adds what a legend covers, where it lies at an edge: the strip beside it, or the one above it where this
-/// takes less of the window.
+/// Adds what a legend covers, where it lies at an edge.
 fn cover(covered: &mut Covered, legend: Rect, window: Rect) {
-    let top = share(legend.bottom() - window.top(), window.height());
-    let is_less = |side: f64| top - covered.top < side;
     if window.right() - legend.right() < NEAR_EDGE {
-        let side = share(window.right() - legend.left(), window.width());
-        if is_less(side) {
-            covered.top = covered.top.max(top);
-        } else {
-            covered.right = side;
-        }
+        covered.beside[1] = share(window.right() - legend.left(), window.width());
     } else if legend.left() - window.left() < NEAR_EDGE {
-        let side = share(legend.right() - window.left(), window.width());
-        if is_less(side) {
-            covered.top = covered.top.max(top);
-        } else {
-            covered.left = side;
-        }
+        covered.beside[0] = share(legend.right() - window.left(), window.width());
+    } else {
+        return;
     }
+    covered.above = share(legend.bottom() - window.top(), window.height());
 }
 
 fn share(points: f32, of: f32) -> f64 {
@@ -86,22 +76,26 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_low_legend_takes_the_top_of_a_window_and_a_high_one_its_side() {
+    fn a_legend_at_an_edge_covers_the_strip_beside_it_or_the_one_above_its_foot() {
         let window = Rect::from_min_max(pos2(0.0, 0.0), pos2(470.0, 570.0));
         let head = Covered {
             top: 0.12,
             ..Covered::default()
         };
-        let mut wide = head;
+        let mut right = head;
         let legend = Rect::from_min_max(pos2(270.0, 44.0), pos2(460.0, 120.0));
-        cover(&mut wide, legend, window);
-        assert_eq!((wide.left, wide.right), (0.0, 0.0));
-        assert!((wide.top - 124.0 / 570.0).abs() < 1e-6);
-        let mut high = head;
-        let legend = Rect::from_min_max(pos2(386.0, 44.0), pos2(460.0, 344.0));
-        cover(&mut high, legend, window);
-        assert!((high.right - 88.0 / 470.0).abs() < 1e-6);
-        assert_eq!((high.left, high.top), (0.0, 0.12));
+        cover(&mut right, legend, window);
+        assert!((right.above - 124.0 / 570.0).abs() < 1e-6);
+        assert!((right.beside[1] - 204.0 / 470.0).abs() < 1e-6);
+        assert_eq!(right.beside[0], 0.0);
+        // What lies over the window besides stays as it is.
+        assert_eq!((right.left, right.right, right.top), (0.0, 0.0, 0.12));
+        let mut left = head;
+        let legend = Rect::from_min_max(pos2(10.0, 44.0), pos2(84.0, 344.0));
+        cover(&mut left, legend, window);
+        assert!((left.beside[0] - 88.0 / 470.0).abs() < 1e-6);
+        assert!((left.above - 348.0 / 570.0).abs() < 1e-6);
+        assert_eq!(left.beside[1], 0.0);
         // One that was dragged into the picture lies there on purpose.
         let mut none = head;
         let legend = Rect::from_min_max(pos2(100.0, 44.0), pos2(290.0, 120.0));
