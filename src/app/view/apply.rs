@@ -227,8 +227,14 @@ impl ViewState {
             points.extend(poses.flat_map(|pose| spread(&part.loaded, pose)));
         }
         let room = self.room(role, scene);
+        let other = role.other();
+        // A linked camera comes along, moved by nobody.
+        let is_other_fitted = self.are_linked && self.is_fitted(other);
         self.fit(role, &points, &room);
         *self.fitted.get_mut(role) = Some(*self.cameras.get(role));
+        if is_other_fitted {
+            *self.fitted.get_mut(other) = Some(*self.cameras.get(other));
+        }
     }
 
     /// The parts a window shows.
