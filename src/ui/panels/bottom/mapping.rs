@@ -214,7 +214,9 @@ fn checks_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
                 });
                 row.col(|ui| {
                     let text = RichText::new(&check.limit).small().color(palette);
-                    ui.add(egui::Label::new(text).truncate());
+                    if ui.available_width() >= LEAST[2] {
+                        ui.add(egui::Label::new(text).truncate());
+                    }
                 });
                 let response = row.response();
                 response.widget_info(|| {
@@ -243,8 +245,12 @@ fn checks_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
 /// Width of the column of marks.
 const SIGN: f32 = 14.0;
 
+/// Least widths of a name, of what was found and of what is asked for.
+const LEAST: [f32; 3] = [80.0, 62.0, 60.0];
+
 /// Widths of the names and of what was found, by their longest texts. Where not all of a row has room, what
-/// was found is cut to three tenths of it first, then what is asked for, and the names last.
+/// was found is cut to three tenths of it first, then what is asked for, which is left out where a name would have to
+/// be cut for it.
 fn check_columns(ui: &Ui, checks: &[CheckRecord]) -> [f32; 2] {
     let widest = |style: TextStyle, text: fn(&CheckRecord) -> &str| {
         let font = style.resolve(ui.style());
@@ -267,8 +273,10 @@ fn check_columns(ui: &Ui, checks: &[CheckRecord]) -> [f32; 2] {
 }
 
 fn column_widths(room: f32, [name, found, limit]: [f32; 3]) -> [f32; 2] {
-    const LEAST: [f32; 3] = [80.0, 62.0, 60.0];
-    let name = name.min((room - LEAST[1] - LEAST[2]).max(LEAST[0]));
+    if name + LEAST[1] + LEAST[2] > room {
+        let name = name.min((room - LEAST[1]).max(LEAST[0]));
+        return [name, (room - name).max(LEAST[1])];
+    }
     let fair = (room - name - limit).max(0.3 * room);
     let found = found.min(fair.min(room - name - LEAST[2]).max(LEAST[1]));
     [name, found]
@@ -576,7 +584,10 @@ mod tests {
         assert_eq!(column_widths(400.0, [180.0, 300.0, 90.0]), [180.0, 130.0]);
         // The words of the pose have room beside a limit that is long.
         assert_eq!(column_widths(354.0, [150.0, 85.0, 190.0]), [150.0, 85.0]);
-        assert_eq!(column_widths(300.0, [180.0, 300.0, 90.0]), [178.0, 62.0]);
+        assert_eq!(column_widths(310.0, [180.0, 300.0, 90.0]), [180.0, 70.0]);
+        // No name is cut for what is asked for.
+        assert_eq!(column_widths(300.0, [180.0, 300.0, 90.0]), [180.0, 120.0]);
+        assert_eq!(column_widths(220.0, [180.0, 300.0, 90.0]), [158.0, 62.0]);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use egui::{CornerRadius, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 
-use super::{MARGIN, Overlay, cube};
+use super::{MARGIN, Overlay, cube, legend};
 use crate::app::{AppState, ColorBy, MapPicture};
 use crate::assess::deviation::OverlapClass;
 use crate::colormap::ColorScale;
@@ -34,20 +34,45 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>, legend: Option<Rect>) {
     readout(&painter, over, taken, legend);
 }
 
-/// The scale bar; returns where it ends.
-fn bar(painter: &Painter, over: &Overlay<'_>) -> f32 {
-    let camera = &over.frame.view.camera;
-    let size = camera.pixel_size(screen_of(over.frame.rect()), &camera.target);
-    let max_bar = MAX_BAR.min(f64::from(over.frame.rect().width()) * 0.25);
-    let Some(bar) = scale_bar(size, max_bar) else {
-        return over.frame.rect().left() + MARGIN;
-    };
+/// Longest scale bar in this window.
+fn max_bar(over: &Overlay<'_>) -> f64 {
+    MAX_BAR.min(f64::from(over.frame.rect().width()) * 0.25)
+}
+
+/// How far from the left edge the scale bar begins.
+fn bar_begin(over: &Overlay<'_>) -> f32 {
     let beside = if cube::is_shown(over) {
         cube::SIZE + 14.0
     } else {
         8.0
     };
-    let left = over.frame.rect().left_bottom() + vec2(MARGIN + beside, -MARGIN - 8.0);
+    MARGIN + beside
+}
+
+/// Least room for the number of a scale bar with its ground.
+const BAR_NUMBER: f32 = 72.0;
+
+/// How much higher than usual the scale bar lies, over a button for which there is no room beside it.
+pub(super) fn bar_lift(over: &Overlay<'_>) -> f32 {
+    let window = over.frame.rect();
+    let widest = (max_bar(over) as f32 + 16.0).max(BAR_NUMBER);
+    let right = window.left() + bar_begin(over) - 8.0 + widest;
+    match legend::button(over) {
+        Some(button) if right > button.left() => window.bottom() - button.top(),
+        _ => 0.0,
+    }
+}
+
+/// The scale bar; returns where it ends.
+fn bar(painter: &Painter, over: &Overlay<'_>) -> f32 {
+    let camera = &over.frame.view.camera;
+    let size = camera.pixel_size(screen_of(over.frame.rect()), &camera.target);
+    let max_bar = max_bar(over);
+    let Some(bar) = scale_bar(size, max_bar) else {
+        return over.frame.rect().left() + MARGIN;
+    };
+    let above = MARGIN + 8.0 + bar_lift(over);
+    let left = over.frame.rect().left_bottom() + vec2(bar_begin(over), -above);
     let right = left + vec2(bar.pixels as f32, 0.0);
     let text = length_text(bar.length) + over.frame.state.lengths_of(over.role()).suffix();
     let galley = painter.layout_no_wrap(text, FontId::proportional(11.5), over.frame.look.text);
@@ -141,7 +166,7 @@ fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32, legend: Option<Rec
         let size = galley.size() + vec2(14.0, 8.0);
         let mut corner = Pos2::new(right, window.bottom()) - Vec2::splat(MARGIN) - size;
         if corner.x < taken + 6.0 {
-            corner.y -= ABOVE_BAR;
+            corner.y -= ABOVE_BAR + bar_lift(over);
         }
         (galley, Rect::from_min_size(corner, size))
     };

@@ -2,7 +2,7 @@
 
 use egui::Rect;
 
-use super::{MARGIN, Overlay, cube, free, header};
+use super::{MARGIN, Overlay, cube, free, header, marks};
 use crate::app::{Command, ViewCommand, ViewRoom};
 use crate::geometry::camera::Covered;
 
@@ -34,7 +34,7 @@ pub(super) fn tell(
 fn covered(over: &Overlay<'_>, legend: Option<Rect>, foot: Option<f32>) -> Covered {
     let window = over.frame.rect();
     let head = header::height(over).unwrap_or(free::BELOW_CHOICE);
-    let foot = foot.unwrap_or(MARGIN + SCALE_BAR);
+    let foot = foot.unwrap_or(MARGIN + SCALE_BAR + marks::bar_lift(over));
     let corner = if cube::is_shown(over) {
         let [width, height] = [MARGIN + cube::SIZE; 2];
         [share(width, window.width()), share(height, window.height())]

@@ -107,14 +107,24 @@ type Classes = fn(&mut Ui, &Overlay<'_>, &mut Vec<Command>);
 /// Height of the button that opens a legend for which its window has no room.
 const BUTTON: f32 = 20.0;
 
+fn button_place(over: &Overlay<'_>) -> Rect {
+    let window = over.frame.rect();
+    let size = vec2(56.0_f32.min(window.width()), BUTTON);
+    Rect::from_min_size(window.max - size - Vec2::splat(4.0), size)
+}
+
+/// Where the button lies that opens the legend of a window too small for it.
+pub(super) fn button(over: &Overlay<'_>) -> Option<Rect> {
+    let is_there = over.scale.is_some() && over.frame.picture.has_colored();
+    (is_there && top(over).is_none()).then(|| button_place(over))
+}
+
 /// A button at the foot of the window that opens the legend over it.
 fn behind_button(ui: &mut Ui, over: &Overlay<'_>, width: f32, add: impl FnOnce(&mut Ui)) {
     if !over.frame.picture.has_colored() {
         return;
     }
-    let window = over.frame.rect();
-    let size = vec2(56.0_f32.min(window.width()), BUTTON);
-    let place = Rect::from_min_size(window.max - size - Vec2::splat(4.0), size);
+    let place = button_place(over);
     let builder = UiBuilder::new()
         .max_rect(place)
         .layout(Layout::right_to_left(Align::Center));
