@@ -5,12 +5,13 @@ use egui_extras::{Column, TableBuilder};
 use egui_plot::PlotPoints;
 
 use super::charts;
+use super::percentiles::{CHART, PERCENTILE, fitting_columns, percentiles_ui};
 use super::probe::{probe_ui, with_unit};
 use crate::app::{
     AppState, ColorBy, Command, InspectCommand, MapResult, Section, ViewCommand, file_names,
 };
 use crate::pipeline::forming_values::FormingValue;
-use crate::pipeline::map::{CheckRecord, ComparisonRecord, DistributionRecord, PairRecord};
+use crate::pipeline::map::{CheckRecord, ComparisonRecord, PairRecord};
 use crate::role::Role;
 use crate::text::{fixed, grouped, inside, sentence};
 use crate::ui::panels::mapping::STALE;
@@ -360,12 +361,8 @@ fn distributions_ui(
         ColorBy::VonMises => ", middle of the sheet",
         _ => "",
     };
-    let is_narrow = is_low && ui.available_width() < PERCENTILES + CHART;
-    let columns: &[usize] = if is_narrow {
-        &[0, 1, 3, 5]
-    } else {
-        &[0, 1, 2, 3, 4, 5]
-    };
+    let room = ui.available_width() - if is_low { CHART } else { 0.0 };
+    let columns = fitting_columns(room);
     let numbers = |ui: &mut Ui| {
         let title = format!("{}{of_layers}, by area", with_unit(state, by));
         caption(ui, title);
@@ -379,7 +376,7 @@ fn distributions_ui(
     if is_low {
         let height = ui.available_height();
         ui.horizontal_top(|ui| {
-            let width = PERCENTILES * (columns.len() + 1) as f32 / 7.0;
+            let width = PERCENTILE * (columns.len() + 1) as f32;
             column_ui(ui, vec2(width, height), numbers);
             histogram_ui(ui, (pair, by), vec2(ui.available_width() - 8.0, height));
         });
@@ -424,7 +421,7 @@ fn compared_ui(
         ("here", &record.here, palette.crash),
         ("there", &record.other, palette.secondary),
     ];
-    percentiles_ui(ui, &rows, &[0, 1, 2, 3, 4, 5], by);
+    percentiles_ui(ui, &rows, fitting_columns(ui.available_width()), by);
     ui.add_space(2.0);
     let numbers = format!(
         "mean difference {} · RMS {} · 95\u{a0}%\u{a0}below {}",
@@ -472,45 +469,6 @@ pub(super) fn look_at_element(
         text: format!("element {id}"),
     };
     commands.push(look.into());
-}
-
-/// Room for six percentiles beside each other.
-const PERCENTILES: f32 = 268.0;
-/// Least room for the histogram beside them; where there is less, four of them do.
-const CHART: f32 = 200.0;
-
-/// One row for each side: its sign, the numbers of these columns, its colour.
-fn percentiles_ui(
-    ui: &mut Ui,
-    rows: &[(&str, &DistributionRecord, egui::Color32)],
-    columns: &[usize],
-    by: ColorBy,
-) {
-    let palette = Palette::of(ui);
-    let titles = ["mean", "5 %", "50 %", "95 %", "99 %", "max"];
-    let numbers = |of: &DistributionRecord| {
-        [of.mean, of.p5, of.p50, of.p95, of.p99, of.max].map(|n| number(by, n))
-    };
-    let quiet = |text: &str| RichText::new(text).small().color(palette.secondary);
-    egui::Grid::new("mapping percentiles")
-        .num_columns(columns.len() + 1)
-        .spacing(vec2(6.0, 0.0))
-        .min_row_height(15.0)
-        .show(ui, |ui| {
-            ui.label("");
-            for &column in columns {
-                ui.label(quiet(titles[column]));
-            }
-            ui.end_row();
-            for (name, of, color) in rows {
-                ui.label(RichText::new(*name).small().color(*color));
-                let numbers = numbers(of);
-                for &column in columns {
-                    ui.label(RichText::new(&numbers[column]).small());
-                }
-                ui.end_row();
-            }
-        });
 }
 
 /// A number of a quantity as it is read, without its unit.

@@ -7,6 +7,7 @@ mod diagnostics;
 mod history;
 mod log;
 mod mapping;
+mod percentiles;
 mod probe;
 mod starts;
 mod sweep;
