@@ -115,6 +115,7 @@ fn read(source: &PartSource, settings: &LoadSettings) -> Result<LoadedPartAndFac
         "car.k" => car(),
         "panel_stamped.k" | "panel_crash.k" => model(20, 1.0, false),
         "metres.k" => model(20, 0.001, true),
+        "inches.k" => model(24, 1.0 / 25.4, false),
         "says_mm.k" => stated(model(24, 1.0, false), "units: mm", b"1"),
         "says_m.k" => stated(model(20, 0.001, true), "units: m", b"2"),
         other => return Err(format!("cannot read the file: {other:?}")),

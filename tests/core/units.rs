@@ -95,6 +95,19 @@ fn what_the_files_say_is_asked_about_once_and_is_one_undo_step() {
 }
 
 #[test]
+fn a_guess_gives_way_to_the_hint_that_contradicts_it() {
+    let mut window = Window::new();
+    window.open("says_mm.k", Role::Crash);
+    window.open("inches.k", Role::Stamped);
+    let guess = window.part(Role::Stamped).loaded.units().unwrap();
+    assert_eq!(guess.words(), "m, guessed from size");
+    let hint = window.state.unit_hint().unwrap();
+    assert_eq!(hint.unit, Some(LengthUnit::Inch));
+    assert_eq!(words(&window, Role::Stamped), "unknown");
+    assert_eq!(window.state.lengths_of(Role::Stamped).suffix(), "");
+}
+
+#[test]
 fn an_answer_is_remembered_for_the_file() {
     let mut first = Window::new();
     first.open("says_mm.k", Role::Crash);

@@ -165,15 +165,13 @@ impl AppState {
     }
 
     /// The units of one file. While it is asked whether the stamped file is in another unit, they
-    /// are what that file says, else what was made of it.
+    /// are what that file says, and no guess that the question contradicts; else what was made of it.
     pub fn units_of(&self, role: Role) -> Option<KnownUnits> {
         let own = self.document.part(role)?.loaded.units();
-        let is_asked = role == Role::Stamped && self.unit_hint().is_some();
-        if is_asked {
-            own
-        } else {
-            *self.document.units().files.get(role)
-        }
+        let Some(hint) = self.unit_hint().filter(|_| role == Role::Stamped) else {
+            return *self.document.units().files.get(role);
+        };
+        own.filter(|known| known.origin.is_firm() || hint.unit == Some(known.units.length))
     }
 }
 

@@ -58,10 +58,15 @@ pub(super) fn plain(
     }
 }
 
-/// Extremes and mean of the values, and of how many they are.
+/// Extremes and mean of the values, and of how many they are. Those at nodes are means of the elements around, so that
+/// they differ from those of the elements, which the report states.
 fn numbers(ui: &mut Ui, over: &Overlay<'_>, of: &Summary, (scale, room): (&ColorScale, Rect)) {
     let number = if scale.min < 0.0 { signed } else { length };
-    let noun = if of.is_of_elements { "element" } else { "node" };
+    let values = if of.is_of_elements {
+        counted(of.n, "element")
+    } else {
+        format!("at {}", counted(of.n, "node"))
+    };
     let builder = UiBuilder::new()
         .max_rect(room)
         .layout(Layout::top_down(Align::Min));
@@ -70,7 +75,7 @@ fn numbers(ui: &mut Ui, over: &Overlay<'_>, of: &Summary, (scale, room): (&Color
         format!("max {}", number(of.max)),
         format!("mean {}", number(of.mean())),
         format!("min {}", number(of.min)),
-        counted(of.n, noun),
+        values,
     ] {
         let text = RichText::new(text).size(11.0);
         beside.label(text.color(over.frame.look.weak));
