@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use super::names::told_apart;
 use super::{Label, Mapping, PointPairs, Shared};
 use crate::assess::Verdict;
 use crate::formats::model::ReadFile;
@@ -11,6 +10,7 @@ use crate::geometry::{Aabb, Similarity, TriMesh};
 use crate::jobs::{MeasuredLevel, PartFacts, PartSource, Stamp};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::match_parts::{MatchRecipe, MatchRun};
+use crate::pipeline::names::told_apart;
 use crate::role::{PerRole, Role};
 
 /// What undo covers: a value that is cheap to clone, because all geometry is shared.

@@ -26,7 +26,6 @@ mod log;
 mod mapping;
 mod matching;
 mod moving;
-mod names;
 mod pairs;
 mod palette;
 mod parts;

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::names::told_apart;
 use super::project::absolute;
 use super::{NoticeLevel, PictureChoice, UnitMemory};
 use crate::colormap::ColorMap;
 use crate::formats::ReadOptions;
 use crate::jobs::PartSource;
+use crate::pipeline::names::told_apart;
 use crate::role::{PerRole, Role};
 
 /// Most entries in the list of recent files.

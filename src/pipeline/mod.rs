@@ -15,6 +15,7 @@ pub mod load;
 pub mod map;
 pub mod map_car;
 pub mod match_parts;
+pub mod names;
 pub mod outputs;
 pub mod preferences;
 mod process;

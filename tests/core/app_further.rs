@@ -277,6 +277,47 @@ fn a_further_file_is_matched_by_itself_and_mapped_from() {
 }
 
 #[test]
+fn stamped_files_of_one_name_are_told_apart_by_their_folders() {
+    let halves = Halves::new();
+    let mut window = halves.window();
+    let folder = halves.folder.path().join("other");
+    std::fs::create_dir(&folder).unwrap();
+    let other = folder.join("left.dynain");
+    std::fs::copy(&halves.stamped[1], &other).unwrap();
+    window.apply(MapCommand::AddFurther(other));
+    let own = halves.folder.path().file_name().unwrap();
+    let told = [Path::new(own), Path::new("other")].map(|folder| {
+        let name = folder.join("left.dynain");
+        name.display().to_string()
+    });
+    let rows = window.state.stamped_rows();
+    assert_eq!(
+        rows.iter().map(|row| &row.name).collect::<Vec<_>>(),
+        [&told[0], &told[1]]
+    );
+    let poses = window.state.document.mapped_poses();
+    assert_eq!(
+        poses.iter().map(|(name, _)| name).collect::<Vec<_>>(),
+        [&told[0], &told[1]]
+    );
+    // So are they in what is said of the mapping.
+    window.act(Action::MapOrCancel);
+    let result = window.state.document.current_mapping().unwrap();
+    let pose = result
+        .record
+        .checks
+        .iter()
+        .find(|check| check.name == "Pose");
+    let found = &pose.unwrap().found;
+    assert!(found.starts_with(&told[0]), "{found}");
+    let warnings = &result.record.warnings;
+    assert!(
+        warnings.iter().any(|line| line.contains(&told[0])),
+        "{warnings:?}"
+    );
+}
+
+#[test]
 fn the_deck_of_several_files_is_that_of_the_command_line() {
     let halves = Halves::new();
     let mut window = halves.with_both();

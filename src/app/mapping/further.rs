@@ -16,6 +16,7 @@ use crate::jobs::{FurtherInput, JobKey, JobKind, PlaceInput, Stamp};
 use crate::pipeline::load::{LoadSettings, LoadedPart, usual_selection};
 use crate::pipeline::map::{PoseOrigin, placing_recipe, pose_warning};
 use crate::pipeline::match_parts::MatchRun;
+use crate::pipeline::names::told_apart;
 use crate::role::{PerRole, Role};
 use crate::text::{counted, grouped};
 use crate::units::Units;
@@ -183,8 +184,16 @@ impl Document {
         };
         let origins = further.into_iter().map(|(_, origin)| origin);
         let origins = std::iter::once(self.pose_origin()).chain(origins);
-        let names = self.all_stamped().map(|part| part.file_name());
+        let names = self.all_stamped().map(|part| self.stamped_name(part));
         names.zip(origins).collect()
+    }
+
+    /// Name of a stamped file, with as much of its folder as tells it from the others.
+    pub fn stamped_name(&self, part: &LoadedPart) -> String {
+        told_apart(
+            &part.path,
+            self.all_stamped().map(|other| other.path.as_path()),
+        )
     }
 
     /// All stamped parts that are mapped from, the first one first.
@@ -280,12 +289,12 @@ impl MappingState {
                 placing(&run, crash_revision, work),
             )
         });
+        let name = work.document.stamped_name(&part);
         let further = work.document.mapping.further.iter_mut();
         let mut further = further.filter(|further| further.revision == revision);
         let Some(further) = further.next() else {
             return;
         };
-        let name = part.file_name();
         let path = part.path.display().to_string();
         let warning = placing
             .as_ref()
@@ -400,7 +409,7 @@ impl MappingState {
             Some(units) if replaces.is_none() => Arc::new(part.with_units(Some(units))),
             _ => part,
         };
-        let name = part.file_name();
+        let name = work.document.stamped_name(&part);
         let line = format!(
             "{name}: {}, one more stamped file",
             counted(part.report.n_triangles, "triangle")
@@ -462,7 +471,8 @@ impl MappingState {
         let Some(further) = work.document.further(revision) else {
             return Vec::new();
         };
-        let name = format!("Remove {}", further.loaded.file_name());
+        let name = work.document.stamped_name(&further.loaded);
+        let name = format!("Remove {name}");
         work.commit(name, |document| {
             let all = &mut document.mapping.further;
             all.retain(|further| further.revision != revision);
@@ -476,7 +486,8 @@ impl MappingState {
         let Some(further) = work.document.further(revision) else {
             return;
         };
-        let name = format!("Match {}", further.loaded.file_name());
+        let name = work.document.stamped_name(&further.loaded);
+        let name = format!("Match {name}");
         change(work, name, revision, |further| {
             further.pose = FurtherPose::Matched;
             further.placing = None;
@@ -489,9 +500,10 @@ pub(super) fn set_pose(work: &mut Work<'_>, revision: u64, pose: FurtherPose) {
     let Some(further) = work.document.further(revision) else {
         return;
     };
+    let name = work.document.stamped_name(&further.loaded);
     let name = match pose {
-        FurtherPose::Matched => format!("Match {}", further.loaded.file_name()),
-        FurtherPose::AsFirst => format!("Pose of {} as the first", further.loaded.file_name()),
+        FurtherPose::Matched => format!("Match {name}"),
+        FurtherPose::AsFirst => format!("Pose of {name} as the first"),
     };
     change(work, name, revision, |further| further.pose = pose);
 }
@@ -505,7 +517,7 @@ pub(super) fn set_units(work: &mut Work<'_>, revision: u64, units: Option<Units>
     if loaded.settings.units == units {
         return Vec::new();
     }
-    let name = loaded.file_name();
+    let name = work.document.stamped_name(&loaded);
     let step = match units {
         Some(units) => format!("{name} is in {}", units.label()),
         None => format!("{name} is in the unit of the first"),

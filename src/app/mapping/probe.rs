@@ -95,8 +95,7 @@ impl AppState {
             let part = self.document.mapped_file(number)?;
             Some(part.model.shells.get(shell)?.id)
         });
-        let stamped_file =
-            giver.and_then(|(number, _)| Some(self.document.mapped_file(number)?.file_name()));
+        let stamped_file = giver.and_then(|(number, _)| self.document.mapped_file_name(number));
         let quantities = self.mapped_quantities();
         let values = quantities.iter().map(|&by| {
             let shown = self.shown_value(by);

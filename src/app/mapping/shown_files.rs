@@ -6,6 +6,7 @@ use super::{Further, MapResult};
 use crate::app::{AppState, Document, Shared};
 use crate::geometry::Similarity;
 use crate::pipeline::load::LoadedPart;
+use crate::pipeline::names::told_apart;
 use crate::role::Role;
 
 /// A further stamped file in the picture.
@@ -73,6 +74,14 @@ impl Document {
         found.map(|(_, number)| number)
     }
 
+    /// Its name, with as much of its folder as tells it from the others of the mapping.
+    pub fn mapped_file_name(&self, number: usize) -> Option<String> {
+        let n_files = 1 + self.current_mapping()?.further.len();
+        let all = (0..n_files).filter_map(|number| self.mapped_file(number));
+        let own = self.mapped_file(number)?;
+        Some(told_apart(&own.path, all.map(|part| part.path.as_path())))
+    }
+
     /// A stamped file that the current mapping was made from.
     pub fn mapped_file(&self, number: usize) -> Option<&Shared<LoadedPart>> {
         let result = self.current_mapping()?;
@@ -128,7 +137,7 @@ impl AppState {
             .filter_map(|(number, giver)| {
                 Some(FileShare {
                     number,
-                    name: self.document.mapped_file(number)?.file_name(),
+                    name: self.document.mapped_file_name(number)?,
                     n_elements: giver.n_elements,
                     area_share: giver.area_share,
                     first: giver.first,

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use super::further::file_name;
 use super::{Further, FurtherPose, MappingState};
-use crate::app::names::told_apart;
 use crate::app::{AppState, Part, UnitHint, facts};
 use crate::assess::Verdict;
 use crate::jobs::JobKey;
 use crate::pipeline::map::PoseOrigin;
+use crate::pipeline::names::told_apart;
 use crate::role::PerRole;
 use crate::units::Units;
 

@@ -1,6 +1,7 @@
 //! The mapping in figures: JSON record and element table.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use serde::Serialize;
 
@@ -16,6 +17,7 @@ use crate::mapping::{
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::forming_values::{FormingValue, LayerChoice, nominal_thickness};
 use crate::pipeline::load::LoadedPart;
+use crate::pipeline::names::told_apart;
 use crate::pipeline::units::PairUnits;
 use crate::report::{DIRECTION, build_id};
 use crate::role::PerRole;
@@ -77,6 +79,12 @@ impl MapRecord {
     pub fn area_share(&self, status: Status) -> f64 {
         let row = self.statuses.iter().find(|row| row.status == status);
         row.map_or(0.0, |row| row.area_share)
+    }
+
+    /// Name of a stamped file, with as much of its folder as tells it from the others.
+    pub(super) fn stamped_name(&self, of: &StampedRecord) -> String {
+        let all = self.stamped.iter().map(|other| Path::new(&other.file));
+        told_apart(Path::new(&of.file), all)
     }
 
     /// How many checks are met, of those that are judged.
@@ -218,7 +226,8 @@ pub fn map_record(
     let units = PairUnits::of(PerRole::new(Some(crash), first));
     let lengths = Lengths::new(units.lengths);
     let of_pose = |placed: &PlacedPart<'_>| {
-        let name = placed.part.file_name();
+        let all = stamped.iter().map(|placed| placed.part.path.as_path());
+        let name = told_apart(&placed.part.path, all);
         placed.origin.warning(&name, lengths)
     };
     let mut record = MapRecord {

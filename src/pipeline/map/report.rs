@@ -52,7 +52,7 @@ pub fn map_report(
             record
                 .stamped
                 .iter()
-                .map(|stamped| file_name(&stamped.file))
+                .map(|stamped| record.stamped_name(stamped))
                 .collect::<Vec<_>>()
                 .join(", "),
         ],
@@ -93,20 +93,12 @@ pub fn map_report(
             .iter()
             .zip(&record.stamped)
             .map(|(pose, stamped)| {
-                let name = file_name(&stamped.file) + &factor_note(stamped.length_factor);
+                let name = record.stamped_name(stamped) + &factor_note(stamped.length_factor);
                 (name, MatrixForm::Rows.write(pose))
             })
             .collect(),
     };
     Ok(report.write())
-}
-
-fn file_name(path: &str) -> String {
-    let name = std::path::Path::new(path).file_name();
-    name.map_or_else(
-        || path.to_owned(),
-        |name| name.to_string_lossy().into_owned(),
-    )
 }
 
 /// The headline figures: name, value, what the value is.
@@ -511,7 +503,7 @@ impl<'a> Painter<'a> {
         let named = record.stamped.iter().zip(&shares).enumerate();
         let mut rows: Vec<(String, [String; 3])> = named
             .map(|(file, (stamped, share))| {
-                let name = file_name(&stamped.file);
+                let name = record.stamped_name(stamped);
                 let row = row(name, share.n_elements, share.area_share);
                 (swatch(file), row)
             })

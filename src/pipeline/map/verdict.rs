@@ -1,7 +1,5 @@
 //! The checks of a mapping: what was found, what is asked for, and where to look.
 
-use std::path::Path;
-
 use serde::{Serialize, Serializer};
 
 use super::balance::force_balance;
@@ -188,10 +186,7 @@ pub(super) fn checks_of(
 
 /// Whether a match stands for the pose of every stamped part; of several the most doubtful is named.
 fn pose(record: &MapRecord, lengths: Lengths) -> Option<CheckRecord> {
-    let of = |stamped: &StampedRecord| {
-        let name = Path::new(&stamped.file).file_name().unwrap_or_default();
-        (name.to_string_lossy().into_owned(), stamped.pose)
-    };
+    let of = |stamped: &StampedRecord| (record.stamped_name(stamped), stamped.pose);
     let poses: Vec<_> = record.stamped.iter().map(of).collect();
     let (most, found) = PoseOrigin::most_doubtful(&poses, lengths)?;
     Some(CheckRecord {

@@ -3,7 +3,9 @@
 use egui::{Button, RichText, Ui, vec2};
 
 use super::explain;
-use crate::app::{Action, AppState, Axis, Command, ExportCommand, MatchCommand, MatchResult, Section};
+use crate::app::{
+    Action, AppState, Axis, Command, ExportCommand, MatchCommand, MatchResult, Section,
+};
 use crate::assess::{Ambiguity, Coverage, OneSided, Reason};
 use crate::jobs::Stamp;
 use crate::registration::{group_starts, limits};
@@ -209,12 +211,7 @@ const TOLERANCE_HELP: &str = "Shape tolerance: how far the shapes may differ bes
 const AIR: f32 = 12.0;
 
 /// The tolerance of the verdict; another one gives a new verdict. From right to left.
-fn tolerance_ui(
-    ui: &mut Ui,
-    state: &AppState,
-    result: &MatchResult,
-    commands: &mut Vec<Command>,
-) {
+fn tolerance_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mut Vec<Command>) {
     let (Some(setting), Some(shape)) = (
         setting("shape-tolerance"),
         result.run.assessment.shape.as_ref(),

@@ -17,11 +17,7 @@ const TITLES: [&str; 7] = ["mean", "min", "5 %", "50 %", "95 %", "99 %", "max"];
 /// As many of them as have room beside each other; mean, both ends and one more at least.
 pub(super) fn fitting_columns(room: f32) -> &'static [usize] {
     let fits = |columns: &&&[usize]| PERCENTILE * (columns.len() + 1) as f32 <= room;
-    let all: [&[usize]; 3] = [
-        &[0, 1, 2, 3, 4, 5, 6],
-        &[0, 1, 2, 4, 5, 6],
-        &[0, 1, 4, 6],
-    ];
+    let all: [&[usize]; 3] = [&[0, 1, 2, 3, 4, 5, 6], &[0, 1, 2, 4, 5, 6], &[0, 1, 4, 6]];
     all.iter().find(fits).copied().unwrap_or(all[2])
 }
 

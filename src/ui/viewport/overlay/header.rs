@@ -306,7 +306,8 @@ fn overlap(state: &AppState) -> Option<String> {
     let known = state
         .current_overlap()
         .filter(|_| !is_measured && !state.is_preview())?;
-    (known.overlap > 0.0 || state.document.has_pose()).then(|| overlap_words(known, state.lengths()))
+    (known.overlap > 0.0 || state.document.has_pose())
+        .then(|| overlap_words(known, state.lengths()))
 }
 
 /// `95 % of crash within 4.50 mm (−5)`: short enough for a narrow window.

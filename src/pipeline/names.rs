@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-/// Name of a file, with as much of its folder as tells it from others of that name.
-pub(super) fn told_apart<'a>(path: &Path, all: impl Iterator<Item = &'a Path>) -> String {
+/// Name of a file, after as much of its folder as tells it from others of that name: cut at its end, it is still told
+/// apart.
+pub fn told_apart<'a>(path: &Path, all: impl Iterator<Item = &'a Path>) -> String {
     let name = path.file_name().unwrap_or(path.as_os_str());
     let folder = path.parent().unwrap_or(Path::new(""));
     let same_name = all.filter(|other| *other != path);
@@ -30,20 +31,26 @@ pub(super) fn told_apart<'a>(path: &Path, all: impl Iterator<Item = &'a Path>) -
     } else {
         &folder
     };
-    format!("{} – {}", name.to_string_lossy(), folder.display())
+    folder.join(name).display().to_string()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// With the separator of this system.
+    fn as_here(path: &str) -> String {
+        path.replace('/', std::path::MAIN_SEPARATOR_STR)
+    }
+
     #[test]
     fn files_of_one_name_have_their_folder() {
         let paths = ["/a/b/part.k", "/a/c/part.k", "/a/b/other.k"].map(Path::new);
         let told = paths.map(|path| told_apart(path, paths.into_iter()));
-        assert_eq!(told, ["part.k – b", "part.k – c", "other.k"]);
+        let expected = ["b/part.k", "c/part.k", "other.k"].map(as_here);
+        assert_eq!(told, expected);
         let paths = ["part.k", "/a/part.k"].map(Path::new);
         let told = paths.map(|path| told_apart(path, paths.into_iter()));
-        assert_eq!(told, ["part.k – .", "part.k – a"]);
+        assert_eq!(told, ["./part.k", "a/part.k"].map(as_here));
     }
 }
