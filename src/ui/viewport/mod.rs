@@ -225,7 +225,8 @@ impl Viewports {
             }
             None => {}
         }
-        let may_fly = may_move && window.has_picture && !is_linked_drag;
+        let has_settled = window.has_settled(rect);
+        let may_fly = may_move && window.has_picture && has_settled && !is_linked_drag;
         let mut shown = window.camera.follow(&camera, now, may_fly);
         if role == Role::Stamped && over >= 1.0 {
             // What is shown beside the left window is seen by its camera in every frame, also while that one is

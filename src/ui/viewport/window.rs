@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{EventFilter, Rect, Response};
+use egui::{EventFilter, Rect, Response, Vec2};
 
 use super::meshes::ShownMesh;
 use super::motion::SmoothCamera;
@@ -38,7 +38,13 @@ pub(super) struct Window {
     /// What was drawn last, for pictures in files.
     pub last_frame: Option<LastFrame>,
     pub has_picture: bool,
+    /// Its size, and for how many frames it has had it.
+    size: Vec2,
+    n_frames: u32,
 }
+
+/// A camera is fitted to a new size in the frame after it, and once more when its legend has its place.
+const FRAMES_TO_FIT: u32 = 3;
 
 impl Window {
     /// A project brings its own cameras: parts and pose that came with it are neither fitted nor
@@ -49,6 +55,18 @@ impl Window {
         if self.is_restored {
             self.followed = state.document.pose;
         }
+    }
+
+    /// False right after the window got another size: a flight to the camera that is fitted to it would show the part
+    /// cut, for long where frames are slow. To be asked once in a frame.
+    pub fn has_settled(&mut self, rect: Rect) -> bool {
+        if self.size == rect.size() {
+            self.n_frames = self.n_frames.saturating_add(1);
+        } else {
+            self.size = rect.size();
+            self.n_frames = 0;
+        }
+        self.n_frames >= FRAMES_TO_FIT
     }
 
     /// A match may take the stamped part far away or turn it over. Then both windows show the parts
@@ -194,6 +212,19 @@ mod tests {
     use crate::app::rotation_about;
     use crate::geometry::camera::ScreenSize;
     use crate::geometry::{Point3, Vector3};
+
+    #[test]
+    fn cameras_fly_once_the_window_has_kept_its_size() {
+        let mut window = Window::default();
+        let sized = |width: f32| Rect::from_min_size(egui::Pos2::ZERO, Vec2::new(width, 300.0));
+        for width in [400.0, 600.0] {
+            let flies = [0, 1, 2, 3].map(|_| window.has_settled(sized(width)));
+            assert_eq!(flies, [false, false, false, true], "{width}");
+        }
+        // It may lie elsewhere.
+        let moved = sized(600.0).translate(Vec2::new(40.0, 0.0));
+        assert!(window.has_settled(moved));
+    }
 
     #[test]
     fn a_carried_camera_shows_the_part_as_before() {
