@@ -19,6 +19,9 @@ pub(super) struct Context<'a> {
     pub target: &'a TargetPart,
     pub options: &'a MapOptions,
     pub facings: &'a [Facing],
+    /// For each element of the target whether its normal points to the other side than those around it; empty where
+    /// none does or nothing depends on it.
+    pub is_reversed: &'a [bool],
     /// For each rule the one that the other side of the sheet sees: those of the target come first.
     pub turned_over: &'a [usize],
     pub points: PointRules,
@@ -277,7 +280,21 @@ impl Context<'_> {
         PartnerFilter {
             normal: self.target.mesh.normals()[element],
             min_cos: self.min_cos,
-            facing: self.facings[source],
+            facing: self.facing(element, source),
+        }
+    }
+
+    /// The side that the normals of a source point to, as an element has it: one that is reversed in its sheet belongs
+    /// to the sheet all the same.
+    pub(super) fn facing(&self, element: usize, source: usize) -> Facing {
+        let of_sheet = self.facings[source];
+        if self.is_reversed.get(element) != Some(&true) {
+            of_sheet
+        } else if self.sources[source].neighbours().any_opposed() {
+            // The element of the source there may be reversed too.
+            Facing::Mixed
+        } else {
+            of_sheet.turned_over()
         }
     }
 

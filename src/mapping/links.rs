@@ -31,11 +31,39 @@ impl Links {
     /// O(elements).
     pub(super) fn of(mesh: &ShellMesh, monitor: &Monitor) -> Result<Self, Cancelled> {
         let merged = mesh.merged_nodes(monitor)?;
-        let n_merged = merged.iter().filter(|&&v| v != u32::MAX).max();
-        let n_merged = n_merged.map_or(0, |&v| v as usize + 1);
-        let corners_of = map_chunks(mesh.len(), monitor, |element| {
-            mesh.corners()[element].map(|node| merged[node as usize])
+        let n_merged = n_merged(&merged);
+        let corners_of = merged_corners(mesh, &merged, monitor)?;
+        let mut links = Self::before_cracks(mesh, n_merged, &corners_of, monitor)?;
+        links.leave_out_cracks(mesh, &merged, &corners_of, monitor)?;
+        let mut is_border = vec![false; n_merged];
+        for_chunks(corners_of.len(), monitor, |range| {
+            for (corners, &bits) in corners_of[range.clone()]
+                .iter()
+                .zip(&links.border_edges[range])
+            {
+                for [i, j] in edges(corners) {
+                    if bits & (1 << i) != 0 {
+                        for end in [corners[i], corners[j]] {
+                            if let Some(border) = is_border.get_mut(end as usize) {
+                                *border = true;
+                            }
+                        }
+                    }
+                }
+            }
         })?;
+        let of_node = |node: &u32| is_border.get(*node as usize).is_some_and(|&border| border);
+        links.is_border_node = merged.iter().map(of_node).collect();
+        Ok(links)
+    }
+
+    /// The links with the sides of cracks among the border edges, and without the border's nodes.
+    fn before_cracks(
+        mesh: &ShellMesh,
+        n_merged: usize,
+        corners_of: &[[u32; 4]],
+        monitor: &Monitor,
+    ) -> Result<Self, Cancelled> {
         let nodes_of = |element: usize| {
             let corners = &corners_of[element];
             let distinct = if corners[2] == corners[3] { 3 } else { 4 };
@@ -55,7 +83,7 @@ impl Links {
                     first,
                     corners,
                     &around_node,
-                    &corners_of,
+                    corners_of,
                     has_area,
                 ))
             })
@@ -82,28 +110,8 @@ impl Links {
             links.border_edges.extend_from_slice(&chunk.border_edges);
         }
         if any_opposed {
-            links.neighbours.find_reversed(&corners_of, monitor)?;
+            links.neighbours.find_reversed(corners_of, monitor)?;
         }
-        links.leave_out_cracks(mesh, &merged, &corners_of, monitor)?;
-        let mut is_border = vec![false; n_merged];
-        for_chunks(corners_of.len(), monitor, |range| {
-            for (corners, &bits) in corners_of[range.clone()]
-                .iter()
-                .zip(&links.border_edges[range])
-            {
-                for [i, j] in edges(corners) {
-                    if bits & (1 << i) != 0 {
-                        for end in [corners[i], corners[j]] {
-                            if let Some(border) = is_border.get_mut(end as usize) {
-                                *border = true;
-                            }
-                        }
-                    }
-                }
-            }
-        })?;
-        let of_node = |node: &u32| is_border.get(*node as usize).is_some_and(|&border| border);
-        links.is_border_node = merged.iter().map(of_node).collect();
         Ok(links)
     }
 
@@ -188,6 +196,81 @@ impl Links {
     pub(super) fn is_border_node(&self, node: u32) -> bool {
         self.is_border_node[node as usize]
     }
+}
+
+fn n_merged(merged: &[u32]) -> usize {
+    let last = merged.iter().filter(|&&v| v != u32::MAX).max();
+    last.map_or(0, |&v| v as usize + 1)
+}
+
+/// The corners of each element by their merged nodes.
+fn merged_corners(
+    mesh: &ShellMesh,
+    merged: &[u32],
+    monitor: &Monitor,
+) -> Result<Vec<[u32; 4]>, Cancelled> {
+    map_chunks(mesh.len(), monitor, |element| {
+        mesh.corners()[element].map(|node| merged[node as usize])
+    })
+}
+
+/// For each element whether its corners go the other way round than those of most of its sheet, by area; empty where
+/// all go alike. A sheet goes on over edges that two elements of one part share and no third: beyond others no side
+/// is the same. O(elements).
+pub(super) fn reversed_in_sheet(
+    mesh: &ShellMesh,
+    monitor: &Monitor,
+) -> Result<Vec<bool>, Cancelled> {
+    let merged = mesh.merged_nodes(monitor)?;
+    let corners_of = merged_corners(mesh, &merged, monitor)?;
+    let links = Links::before_cracks(mesh, n_merged(&merged), &corners_of, monitor)?;
+    let neighbours = links.neighbours;
+    if !neighbours.any_opposed() {
+        return Ok(Vec::new());
+    }
+    let across = |element: usize, ends: [u32; 2]| {
+        let others = neighbours.of(element).iter().map(|&other| other as usize);
+        let mut others = others.filter_map(|other| {
+            let same_way = goes_along(&corners_of[other], ends)?;
+            (mesh.areas()[other] > 0.0).then_some((other, same_way))
+        });
+        let only = others.next().filter(|_| others.next().is_none());
+        only.filter(|(other, _)| mesh.parts()[*other] == mesh.parts()[element])
+    };
+    let mut is_reversed: Vec<Option<bool>> = vec![None; mesh.len()];
+    let mut sheet = Vec::new();
+    for first in 0..mesh.len() {
+        if is_reversed[first].is_some() {
+            continue;
+        }
+        is_reversed[first] = Some(false);
+        sheet.clear();
+        sheet.push(first);
+        let (mut areas, mut at) = ([0.0; 2], 0);
+        while let Some(&element) = sheet.get(at) {
+            if at.is_multiple_of(CHUNK) {
+                monitor.check()?;
+            }
+            at += 1;
+            let own = is_reversed[element] == Some(true);
+            areas[usize::from(own)] += mesh.areas()[element];
+            let corners = &corners_of[element];
+            for ends in edges(corners).map(|[i, j]| [corners[i], corners[j]]) {
+                if let Some((other, same_way)) = across(element, ends)
+                    && is_reversed[other].is_none()
+                {
+                    is_reversed[other] = Some(own != same_way);
+                    sheet.push(other);
+                }
+            }
+        }
+        if areas[1] > areas[0] {
+            for &element in &sheet {
+                is_reversed[element] = is_reversed[element].map(|own| !own);
+            }
+        }
+    }
+    Ok(is_reversed.into_iter().map(|r| r == Some(true)).collect())
 }
 
 /// The edges of an element by the places of their corners; a triangle has three.
@@ -277,6 +360,11 @@ impl Neighbours {
     /// Elements that share a node with `element`, in rising order.
     pub fn of(&self, element: usize) -> &[u32] {
         self.lists.of(element)
+    }
+
+    /// True if two elements that share an edge have their normals on opposite sides.
+    pub(super) fn any_opposed(&self) -> bool {
+        !self.is_reversed.is_empty()
     }
 
     /// True if two elements of one sheet have their normals on opposite sides of it. What a fold does to normals

@@ -53,6 +53,7 @@ use rayon::prelude::*;
 use crate::geometry::{Similarity, z_order_for};
 use crate::monitor::{Cancelled, Monitor};
 use element::{Buffers, Context, Scratch};
+use links::reversed_in_sheet;
 use points::PointRules;
 use source::{PartnerFilter, PreparedSource, SourcePoint};
 
@@ -127,11 +128,13 @@ pub fn map(
         .zip(&source_sizes)
         .map(|(source, &size)| facing(source, target, options, size))
         .collect();
+    let is_reversed = reversed_elements(target, options, &facings, monitor)?;
     let context = Context {
         sources: &prepared,
         target,
         options,
         facings: &facings,
+        is_reversed: &is_reversed,
         turned_over: &turned_over,
         points: PointRules::new(),
         min_cos,
@@ -279,6 +282,21 @@ fn facing(
     } else {
         Facing::Mixed
     }
+}
+
+/// The elements whose normal points to the other side than those around them, where that tells which sheet they
+/// belong to.
+fn reversed_elements(
+    target: &TargetPart,
+    options: &MapOptions,
+    facings: &[Facing],
+    monitor: &Monitor,
+) -> Result<Vec<bool>, Cancelled> {
+    let is_signed = facings.iter().any(|facing| *facing != Facing::Mixed);
+    if options.normal_sense != NormalSense::Auto || !is_signed {
+        return Ok(Vec::new());
+    }
+    reversed_in_sheet(&target.mesh, monitor)
 }
 
 fn map_chunks(

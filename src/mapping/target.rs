@@ -76,6 +76,15 @@ impl Facing {
         }
     }
 
+    /// What it is for an element whose own normal points to the other side than those around it.
+    pub(super) fn turned_over(self) -> Self {
+        match self {
+            Self::Same => Self::Opposite,
+            Self::Opposite => Self::Same,
+            Self::Mixed => Self::Mixed,
+        }
+    }
+
     /// The cosine between the target's normal and a source's, `cos` from corner orders, as it counts.
     pub(super) fn cosine(self, cos: f64) -> f64 {
         match self {

@@ -40,7 +40,7 @@ impl Context<'_> {
     fn is_compatible(&self, element: usize, source: usize, other: u32) -> bool {
         let normal = self.target.mesh.normals()[element];
         let cos = self.sources[source].mesh.normals()[other as usize].dot(&normal);
-        self.facings[source].cosine(cos) >= self.min_cos
+        self.facing(element, source).cosine(cos) >= self.min_cos
     }
 }
 

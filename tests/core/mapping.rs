@@ -635,6 +635,58 @@ fn a_flipped_target_takes_the_layers_from_the_other_side() {
     }
 }
 
+/// Elements whose corners go the other way round than those around them have the values of the same material, whether
+/// the stamped elements there are turned over too or not.
+#[test]
+fn a_few_reversed_elements_are_mapped_as_the_sheet_they_lie_in() {
+    let some_flipped = |mesh: &ShellMesh, every: usize| {
+        let all = flipped(mesh);
+        let pairs = mesh.corners().iter().zip(all.corners()).enumerate();
+        let corners = pairs.map(|(e, (own, other))| if e % every == 7 { *other } else { *own });
+        let parts = mesh.parts().to_vec();
+        ShellMesh::new(mesh.positions().to_vec(), corners.collect(), parts).unwrap()
+    };
+    let fine = Blank::new(3.0).mesh(flat);
+    let onto = Blank {
+        length: 60.0,
+        width: 40.0,
+        size: 5.0,
+        jitter: 0.2,
+    };
+    let onto = onto.mesh(|u, v| flat(u + 20.3, v + 10.1));
+    for mesh in [fine.clone(), some_flipped(&fine, 31)] {
+        let part = source(mesh, 5, |e, t, mesh| {
+            let (at, t) = (mesh.centroids()[e], t * mesh.normals()[e].z);
+            let x = 0.1 * at.x + 3.0 * t;
+            [x, 2.0 * x, 3.0, x, 2.0 + x, 1.0, 0.2 + 0.05 * t]
+        });
+        let straight = map_one(
+            &part,
+            Similarity::identity(),
+            &target(onto.clone(), 5),
+            &full(),
+        );
+        for every in [20, 40] {
+            let reversed = target(some_flipped(&onto, every), 5);
+            let mapped = map_one(&part, Similarity::identity(), &reversed, &full());
+            assert_eq!(mapped.facings, [Facing::Same]);
+            for element in 0..onto.len() {
+                assert_eq!(mapped.elements[element].status, Status::Mapped);
+                let [found, plain] =
+                    [&mapped, &straight].map(|of| of.states.as_ref().unwrap().of(element).to_vec());
+                let plain = if element % every == 7 {
+                    plain.into_iter().rev().collect()
+                } else {
+                    plain
+                };
+                for (a, b) in found.iter().flatten().zip(plain.iter().flatten()) {
+                    assert!((a - b).abs() < 1e-9, "{element}: {a} and {b}");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn hoop_stress_on_a_radius_stays_in_the_sheet() {
     let hoop = |e: usize, _: f64, mesh: &ShellMesh| {
