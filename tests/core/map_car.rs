@@ -276,14 +276,17 @@ fn two_stamped_parts_in_one_place_are_told() {
         ]
         .concat(),
     );
-    assert!(done.status.success(), "{}", errors(&done));
+    assert_eq!(done.status.code(), Some(1), "{}", errors(&done));
     let record: Value = serde_json::from_slice(&done.stdout).unwrap();
-    for row in record["rows"].as_array().unwrap() {
-        assert_eq!(row["state"], "check");
+    let rows = record["rows"].as_array().unwrap();
+    for row in rows {
         let share = row["reasons"][0]["conflict"].as_f64().unwrap();
         assert!(share > 0.95, "{row}");
-        assert_eq!(row["files"][0], "stamped.k");
     }
+    // Of equal ones the first gives all values.
+    assert_eq!([&rows[0]["state"], &rows[1]["state"]], ["check", "none"]);
+    assert_eq!(rows[0]["files"][0], "stamped.k");
+    assert_eq!(rows[1]["reasons"][1], "gives-nothing", "{}", rows[1]);
     // Nothing that is read is written over, and no folder is made below one that is not there.
     let refused = car.run(&["map-car", CRASH, STAMPED[1], "--out", "no/folder"]);
     assert_eq!(refused.status.code(), Some(1));
@@ -331,6 +334,110 @@ fn a_doubtful_match_gives_way_to_a_good_one() {
     assert!(deck("mapped") == deck("alone"));
 }
 
+/// A sheet of `n` elements of a size whose shape is that of the others but for a bump; the hole has no elements.
+/// Nodes and elements count from `1000 · part + 1`; one with a thickness is a stamped one.
+fn bumped(bump: [f64; 2], n: [u32; 2], size: f64, part: u32, thickness: Option<f64>) -> String {
+    let is_bumped = |x: f64, y: f64, [bx, by]: [f64; 2], width: f64| {
+        (-((x - bx).powi(2) + (y - by).powi(2)) / (width * width)).exp()
+    };
+    let height = |x: f64, y: f64| {
+        let common = 0.2 * (x - 140.0).abs() + 30.0 * is_bumped(x, y, [100.0, 70.0], 40.0);
+        common + 14.0 * is_bumped(x, y, bump, 30.0)
+    };
+    let [nx, ny] = n;
+    let id = |i: u32, j: u32| 1000 * part + j * (nx + 1) + i + 1;
+    let (mut nodes, mut shells) = ("*NODE\n".to_owned(), "*ELEMENT_SHELL".to_owned());
+    shells += match thickness {
+        Some(_) => "_THICKNESS\n",
+        None => "\n",
+    };
+    for j in 0..=ny {
+        for i in 0..=nx {
+            let (x, y) = (size * f64::from(i), size * f64::from(j));
+            nodes += &format!("{:>8}{x:>16.6}{y:>16.6}{:>16.6}\n", id(i, j), height(x, y));
+            let along = |i: u32, n: u32, hole: f64| (f64::from(i) + 0.5) / f64::from(n) - hole;
+            let off = along(i, nx, 0.3).powi(2) + along(j, ny, 0.4).powi(2);
+            if i < nx && j < ny && off >= 0.008 {
+                let corners = [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)];
+                let fields = [id(i, j), part].into_iter().chain(corners);
+                shells += &fields.map(|id| format!("{id:>8}")).collect::<String>();
+                shells += "\n";
+                shells += &thickness.map_or(String::new(), |t| format!("{t:>16}").repeat(4) + "\n");
+            }
+        }
+    }
+    let head = match thickness {
+        Some(_) => "*KEYWORD\n".to_owned(),
+        None => format!(
+            "*PART\nsheet\n{part:>10}{part:>10}\n*SECTION_SHELL\n{part:>10}{:>10}{:>20}\n{:>10}\n",
+            2, 2, 1.0
+        ),
+    };
+    head + &nodes + &shells + if thickness.is_some() { "*END\n" } else { "" }
+}
+
+/// Maps onto crash parts, each with the place of its bump and its elements, `files` with the same and their size.
+fn map_bumped(
+    parts: &[([f64; 2], [u32; 2])],
+    files: &[(&str, [f64; 2], [u32; 2], f64)],
+) -> (Option<i32>, Vec<Value>) {
+    let folder = tempfile::tempdir().unwrap();
+    let parts = (1..).zip(parts);
+    let parts: String = parts
+        .map(|(id, (bump, n))| bumped(*bump, *n, 10.0, id, None))
+        .collect();
+    std::fs::write(
+        folder.path().join("car.k"),
+        format!("*KEYWORD\n{parts}*END\n"),
+    )
+    .unwrap();
+    for (number, (name, bump, n, size)) in files.iter().enumerate() {
+        let thickness = 0.9 - 0.05 * number as f64;
+        let deck = bumped(*bump, *n, *size, 1, Some(thickness));
+        std::fs::write(folder.path().join(name), deck).unwrap();
+    }
+    let mut command = Command::new(env!("CARGO_BIN_EXE_shapematch"));
+    command
+        .current_dir(folder.path())
+        .args(["map-car", "car.k"]);
+    let names = files.iter().map(|file| file.0);
+    let done = command
+        .args(names)
+        .args(["--out", "mapped", "--json", "-"])
+        .output()
+        .unwrap();
+    let record: Value = serde_json::from_slice(&done.stdout).unwrap();
+    (
+        done.status.code(),
+        record["rows"].as_array().unwrap().clone(),
+    )
+}
+
+#[test]
+fn of_doubtful_matches_the_one_that_fits_clearly_better_is_mapped_and_gives_its_name() {
+    let own = [240.0, 140.0];
+    let files = [
+        ("other.dynain", [60.0, 150.0], [38, 26], 8.0),
+        ("own.dynain", own, [43, 29], 7.0),
+    ];
+    let (code, rows) = map_bumped(&[(own, [30, 20])], &files);
+    assert_eq!(code, Some(1));
+    let [other, own] = [&rows[0], &rows[1]];
+    for row in [other, own] {
+        assert_eq!(row["verdict"], "check", "{row}");
+        assert_eq!(row["crash_parts"][0], 1);
+    }
+    assert_eq!(other["state"], "none", "{other}");
+    let reasons = other["reasons"].as_array().unwrap();
+    assert!(reasons.contains(&"displaced".into()), "{other}");
+    assert!(other["mapped_area"].is_null() && other["thickness"].is_null());
+    assert_eq!(own["mapped_area"], 1.0);
+    assert!(
+        (own["thickness"].as_f64().unwrap() - 0.85).abs() < 1e-9,
+        "{own}"
+    );
+    assert_eq!(own["files"][0], "own.k");
+}
 #[test]
 fn half_of_a_symmetric_sheet_is_told_with_its_mirror_image() {
     let folder = tempfile::tempdir().unwrap();

@@ -60,7 +60,11 @@ const MODULES: &[(&[&str], &str, &str)] = &[
         "From the tests with closed forms in `tests/core/mapping.rs` and the literature named in the modules.",
     ),
     (
-        &["pipeline/find_parts.rs", "pipeline/likeness.rs"],
+        &[
+            "pipeline/find_parts.rs",
+            "pipeline/find_parts",
+            "pipeline/likeness.rs",
+        ],
         "Which parts belong together",
         "Checked on decks of generated parts (`tests/core/find_parts.rs`, `tests/core/map_car.rs`).",
     ),

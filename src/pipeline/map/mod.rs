@@ -201,8 +201,7 @@ impl MapRun {
         let nominal = self.target.nominal_thickness.iter().copied();
         let known: Vec<f64> = nominal.filter(|t| t.is_finite() && *t > 0.0).collect();
         let mean = known.iter().sum::<f64>() / known.len().max(1) as f64;
-        let ratio = thickness.mean / mean;
-        (mean > 0.0 && !USUAL_THINNING.contains(&ratio)).then_some(ratio)
+        unusual_ratio(thickness.mean, mean)
     }
 
     /// A quantity of the source element that an element took its values from, given by part and
@@ -216,6 +215,12 @@ impl MapRun {
             )
         })
     }
+}
+
+/// A mean thickness over that of the section where that is unusual.
+pub(in crate::pipeline) fn unusual_ratio(thickness: f64, section: f64) -> Option<f64> {
+    let ratio = thickness / section;
+    (section > 0.0 && !USUAL_THINNING.contains(&ratio)).then_some(ratio)
 }
 
 /// Maps the stamped parts onto `crash` and checks the result.

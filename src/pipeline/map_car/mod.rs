@@ -2,6 +2,7 @@
 //! deck includes all results.
 
 mod record;
+mod together;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -11,7 +12,7 @@ pub use record::{CAR_COLUMNS, CarCopy, CarReason, CarRecord, CarRow, CarState};
 
 use super::PipelineError;
 use super::error::unless_cancelled;
-use super::find_parts::{FoundParts, find_parts, guessed_units, mirrored_twin};
+use super::find_parts::{Fit, FoundParts, find_parts, guessed_units, mirrored_twin};
 use super::load::{LoadSettings, LoadedPart, load, prepare};
 use super::map::{
     DefaultThickness, LEAST_AREA, MapOutput, MapRecipe, MapRecord, MapRun, NewStates, PlacedPart,
@@ -31,6 +32,7 @@ use crate::report::html::CarReport;
 use crate::report::{DIRECTION, build_id};
 use crate::role::PerRole;
 use crate::text::Lengths;
+use together::{Given, given, that_give_way};
 
 /// Stamped parts that lie on the same elements by more than this share of the area are in conflict.
 const CONFLICT: f64 = 0.02;
@@ -119,18 +121,15 @@ struct Claim {
     verdict: Verdict,
     /// Whether the match is good but for errors of the reader.
     is_good: bool,
+    fit: Fit,
 }
 
 /// What was made of the stamped parts of one group.
 struct Made {
     record: MapRecord,
     title: String,
-    /// Mean thickness of the crash elements with values; NaN where none was mapped.
-    thickness: f64,
-    /// Of each stamped part, whether it gave way to one that fits better.
-    is_displaced: Vec<bool>,
-    /// Mean thickness over that of the section, where that is unusual.
-    thickness_ratio: Option<f64>,
+    /// What each stamped part gives; `None` of one that gave way to one that fits better.
+    given: Vec<Option<Given>>,
     files: Vec<String>,
     page: Option<String>,
     /// Elements with old states that are not replaced.
@@ -167,26 +166,23 @@ pub fn map_car(
     let mut new_states = NewStates::default();
     for members in groups(&claims) {
         monitor.check()?;
-        let is_good = |at: &&usize| claims[*at].is_good;
-        let first = members.iter().find(is_good).unwrap_or(&members[0]);
         let group = Group {
             crash,
             members: members
                 .iter()
                 .map(|at| (&stamped[*at], &claims[at]))
                 .collect(),
-            stem: &stems[*first],
+            stems: members.iter().map(|at| &stems[*at][..]).collect(),
         };
         match unless_cancelled(group.map_and_write(recipe, monitor))? {
             Ok(made) => {
-                let all = members.iter().zip(&made.is_displaced).zip(&made.unread);
-                for ((&at, is_displaced), unread) in all {
+                let all = members.iter().zip(&made.given).zip(&made.unread);
+                for ((&at, given), unread) in all {
                     let unread = unread.iter().cloned();
                     rows[at].reasons.extend(unread.map(CarReason::Unread));
-                    if *is_displaced {
-                        rows[at].reasons.push(CarReason::Displaced);
-                    } else {
-                        take(&mut rows[at], &made);
+                    match given {
+                        Some(given) => take(&mut rows[at], &made, given),
+                        None => rows[at].reasons.push(CarReason::Displaced),
                     }
                 }
                 included.extend(made.files);
@@ -297,21 +293,26 @@ fn claim(row: &mut CarRow, found: &FoundParts, lengths: Lengths) -> Claim {
         pose: run.crash_from_stamped,
         verdict: run.assessment.verdict,
         is_good: run.assessment.verdict_as_read() == Verdict::Good,
+        fit: found.found.fit(),
     }
 }
 
-/// Puts what was mapped into the row.
-fn take(row: &mut CarRow, made: &Made) {
+/// Puts what was mapped into the row of a part.
+fn take(row: &mut CarRow, made: &Made, given: &Given) {
     let record = &made.record;
-    row.title.clone_from(&made.title);
-    row.mapped_area = Some(record.mapped_area);
-    row.thickness = Some(made.thickness).filter(|t| t.is_finite());
-    row.files.clone_from(&made.files);
-    row.page.clone_from(&made.page);
     let conflict = record.area_share(Status::Conflict);
     if conflict > CONFLICT {
         row.reasons.push(CarReason::Conflict(conflict));
     }
+    if given.area <= 0.0 {
+        row.reasons.push(CarReason::GivesNothing);
+        return;
+    }
+    row.title.clone_from(&made.title);
+    row.mapped_area = Some(given.area);
+    row.thickness = Some(given.thickness).filter(|t| t.is_finite());
+    row.files.clone_from(&made.files);
+    row.page.clone_from(&made.page);
     if record.mapped_area < LEAST_AREA {
         row.reasons.push(CarReason::Area(record.mapped_area));
     }
@@ -325,7 +326,7 @@ fn take(row: &mut CarRow, made: &Made) {
     }
     let bare = made.bare.iter().cloned();
     row.reasons.extend(bare.map(CarReason::Bare));
-    if let Some(ratio) = made.thickness_ratio {
+    if let Some(ratio) = given.thickness_ratio {
         row.reasons.push(CarReason::Thickness(ratio));
     }
     row.state = if row.reasons.is_empty() {
@@ -360,7 +361,16 @@ fn groups(claims: &BTreeMap<usize, Claim>) -> Vec<Vec<usize>> {
 struct Group<'a> {
     crash: &'a LoadedPart,
     members: Vec<(&'a StampedFile, &'a Claim)>,
-    stem: &'a str,
+    /// Names for the files of each member.
+    stems: Vec<&'a str>,
+}
+
+/// What of a group was mapped.
+struct Together<'a> {
+    /// Which of the members.
+    members: Vec<usize>,
+    placed: Vec<PlacedPart<'a>>,
+    run: MapRun,
 }
 
 impl Group<'_> {
@@ -371,41 +381,24 @@ impl Group<'_> {
             load(&file.path, &file.settings, monitor)
         });
         let stamped: Vec<LoadedPart> = stamped.collect::<Result<_, _>>()?;
-        let all = stamped.iter().zip(&self.members);
-        let mut placed: Vec<PlacedPart<'_>> = all
-            .map(|(part, (_, claim))| PlacedPart {
-                part,
-                crash_from_stamped: claim.pose,
-                origin: PoseOrigin::Match {
-                    verdict: claim.verdict,
-                },
-            })
-            .collect();
-        let mut mapping = recipe.map.clone();
-        // They are given for all files or for none.
-        let files = self.members.iter().map(|(file, _)| file);
-        mapping.stress_factors = files.filter_map(|file| file.stress_factor).collect();
-        let mut run = map_parts(&crash, &placed, &mapping, monitor)?;
-        let is_good = || self.members.iter().map(|(_, claim)| claim.is_good);
-        let mut is_displaced = vec![false; placed.len()];
-        let differ = is_good().any(|good| good) && !is_good().all(|good| good);
-        if differ && run.mapped.area_share(Status::Conflict, &run.target.mesh) > CONFLICT {
-            // A part that lies where a better one lies would put its values over the right ones.
-            is_displaced = is_good().map(|good| !good).collect();
-            let mut good = is_good();
-            placed.retain(|_| good.next().unwrap_or(true));
-            let mut good = is_good();
-            mapping
-                .stress_factors
-                .retain(|_| good.next().unwrap_or(true));
-            run = map_parts(&crash, &placed, &mapping, monitor)?;
-        }
+        let Together {
+            members,
+            placed,
+            run,
+        } = self.map_those_that_stay(&crash, &stamped, &recipe.map, monitor)?;
         if run.is_empty() {
             return Err(PipelineError::NothingMapped);
         }
+        let given = given(&run, monitor)?;
+        // Of equal shares that of the first.
+        let most = (0..given.len()).rev().max_by(|a, b| {
+            let [a, b] = [a, b].map(|at| given[*at].area);
+            a.total_cmp(&b)
+        });
+        let stem = self.stems[members[most.unwrap_or(0)]];
         let output = MapOutput {
             kind: WriteKind::Include,
-            path: recipe.folder.join(format!("{}.k", self.stem)),
+            path: recipe.folder.join(format!("{stem}.k")),
             is_large: recipe.is_large,
             default_thickness: recipe.default_thickness,
             // Those of all parts together.
@@ -417,7 +410,7 @@ impl Group<'_> {
         for file in &files.files {
             write_file_unless_cancelled(&file.path, &file.bytes, monitor)?;
         }
-        let page = recipe.has_pages.then(|| format!("{}.html", self.stem));
+        let page = recipe.has_pages.then(|| format!("{stem}.html"));
         if let Some(name) = &page {
             let page = map_report(&run, &record, &crash, None, monitor)?;
             write_file_unless_cancelled(&recipe.folder.join(name), page.as_bytes(), monitor)?;
@@ -428,9 +421,9 @@ impl Group<'_> {
         };
         Ok(Made {
             title: first_title(&crash),
-            thickness: run.mean_thickness(),
-            thickness_ratio: run.unusual_thickness(),
-            is_displaced,
+            given: (0..stamped.len())
+                .map(|at| Some(given[members.iter().position(|member| *member == at)?]))
+                .collect(),
             files: files.files.iter().map(|file| name_of(&file.path)).collect(),
             n_old_states: if recipe.map.options.replace_states {
                 0
@@ -441,12 +434,73 @@ impl Group<'_> {
             by_solver: mapped_by_solver(&crash),
             unread: stamped
                 .iter()
-                .map(|part| file_lines(part, &mapping.options))
+                .map(|part| file_lines(part, &recipe.map.options))
                 .collect(),
             bare: bare_elements(&run, &placed),
             mirrored_twin,
             record,
             page,
+        })
+    }
+
+    /// Maps all members together, or where some lie in the place of others that fit better, these alone.
+    fn map_those_that_stay<'a>(
+        &self,
+        crash: &LoadedPart,
+        stamped: &'a [LoadedPart],
+        recipe: &MapRecipe,
+        monitor: &Monitor,
+    ) -> Result<Together<'a>, PipelineError> {
+        let all: Vec<usize> = (0..stamped.len()).collect();
+        let together = self.map_members(all, (crash, stamped), recipe, monitor)?;
+        let mapped = &together.run.mapped;
+        if mapped.area_share(Status::Conflict, &together.run.target.mesh) <= CONFLICT {
+            return Ok(together);
+        }
+        let mut stay = together.members.clone();
+        let is_good = |at: &usize| self.members[*at].1.is_good;
+        if stay.iter().any(is_good) {
+            // A part that lies where a better one lies would put its values over the right ones.
+            stay.retain(is_good);
+        }
+        let rest: Vec<_> = stay
+            .iter()
+            .map(|at| (&stamped[*at], self.members[*at].1))
+            .collect();
+        let mut give_way = that_give_way(crash, &rest).into_iter();
+        stay.retain(|_| !give_way.next().unwrap_or(false));
+        if stay.len() == stamped.len() {
+            return Ok(together);
+        }
+        self.map_members(stay, (crash, stamped), recipe, monitor)
+    }
+
+    fn map_members<'a>(
+        &self,
+        members: Vec<usize>,
+        (crash, stamped): (&LoadedPart, &'a [LoadedPart]),
+        recipe: &MapRecipe,
+        monitor: &Monitor,
+    ) -> Result<Together<'a>, PipelineError> {
+        let place = |at: &usize| {
+            let claim = self.members[*at].1;
+            PlacedPart {
+                part: &stamped[*at],
+                crash_from_stamped: claim.pose,
+                origin: PoseOrigin::Match {
+                    verdict: claim.verdict,
+                },
+            }
+        };
+        let placed: Vec<PlacedPart<'_>> = members.iter().map(place).collect();
+        let mut mapping = recipe.clone();
+        // They are given for all files or for none.
+        let factors = members.iter().map(|at| self.members[*at].0.stress_factor);
+        mapping.stress_factors = factors.flatten().collect();
+        Ok(Together {
+            run: map_parts(crash, &placed, &mapping, monitor)?,
+            placed,
+            members,
         })
     }
 

@@ -54,6 +54,8 @@ pub enum CarReason {
     MirrorImage([[f64; 4]; 4]),
     /// Another stamped part lies in its place and fits better.
     Displaced,
+    /// No element takes its values: others lie there that are as near.
+    GivesNothing,
     /// Only this share of the area has values.
     Area(f64),
     /// The mapped thickness is so many times the section's.
@@ -98,6 +100,9 @@ impl CarReason {
                     .to_owned()
             }
             Self::Displaced => "another stamped part lies there and fits better".to_owned(),
+            Self::GivesNothing => {
+                "no element takes its values: another stamped part lies there as well".to_owned()
+            }
             Self::Area(share) => format!("{} of the area has values", percent(*share)),
             Self::Thickness(ratio) => {
                 format!(
@@ -138,11 +143,11 @@ pub struct CarRow {
     pub verdict: Option<Verdict>,
     /// Root mean square distance of the surfaces.
     pub rms: Option<f64>,
-    /// Share of the crash parts' area with values.
+    /// Share of the crash parts' area that takes its values from it.
     pub mapped_area: Option<f64>,
-    /// Mean thickness of the crash parts after the mapping.
+    /// Mean thickness that it gives the crash parts.
     pub thickness: Option<f64>,
-    /// Names of the files with its values.
+    /// Names of the files with its values, and with those of other stamped parts on the same crash parts.
     pub files: Vec<String>,
     /// Name of its page, if one was written.
     pub page: Option<String>,
