@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-pub use fit::Fit;
+pub use fit::{Fit, Presence};
 
 use super::error::unless_cancelled;
 use super::likeness::{Moments, Signature, moments_of_parts, more_alike};
@@ -54,6 +54,8 @@ pub struct FoundParts {
     /// Ids of other parts that the stamped part fits about as well, or lies closer to: copies, or the other side of
     /// the car.
     pub rivals: Vec<u64>,
+    /// Whether the part it belongs to is there.
+    pub presence: Presence,
     /// Time of the whole search in milliseconds.
     pub took_ms: f64,
 }
@@ -96,7 +98,10 @@ pub fn find_parts(
     };
     let found = task.with_further_parts(found)?;
     let rivals = not_among(&found.part.chosen_part_ids(), rivals);
+    let is_rival = |(id, _): &&(u64, Fit)| rivals.contains(id);
+    let singles: Vec<(u64, Fit)> = search.singles.iter().filter(is_rival).copied().collect();
     Ok(Some(FoundParts {
+        presence: presence(parts, &found, &singles, monitor)?,
         found,
         rivals,
         took_ms: millis_since(begin),
@@ -124,6 +129,42 @@ pub fn guessed_units(
     });
     let best = alike.max_by(|a, b| a.0.total_cmp(&b.0));
     Ok(best.map(|(_, guess)| guess))
+}
+
+/// Whether the part that the stamped one belongs to is among those that were tried. `rivals` fit about as well as
+/// the one that was `found`; copies of it and the other side of the car are no sign that it is wrong.
+fn presence(
+    parts: PerRole<&LoadedPart>,
+    found: &Found,
+    rivals: &[(u64, Fit)],
+    monitor: &Monitor,
+) -> Result<Presence, Cancelled> {
+    let ids = found.part.chosen_part_ids();
+    let moments = if rivals.is_empty() {
+        BTreeMap::new()
+    } else {
+        let factor = parts.crash.settings.length_factor;
+        moments_of_parts(&parts.crash.model, factor, monitor)?
+    };
+    let signature = |id: &u64| moments.get(id)?.signature(None);
+    let mut shapes: Vec<Signature> = ids.iter().filter_map(signature).collect();
+    let mut others = Vec::new();
+    for (id, of_rival) in rivals {
+        let Some(own) = signature(id) else {
+            continue;
+        };
+        if shapes
+            .iter()
+            .all(|shape| shape.likeness(&own) < fit::AS_ALIKE)
+        {
+            shapes.push(own);
+            others.push((*id, *of_rival));
+        }
+    }
+    let [stamped, crash] = [parts.stamped, &found.part].map(LoadedPart::mean_thickness);
+    let gauge = stamped.zip(crash).map(|(stamped, crash)| stamped / crash);
+    let first = ids.first().copied().unwrap_or_default();
+    Ok(Presence::of((first, &found.fit()), &others, gauge))
 }
 
 /// The rivals that were not taken in as further parts of the sheet.
@@ -222,6 +263,7 @@ impl Found {
             apart: shape.map_or(f64::INFINITY, |shape| {
                 shape.springback.hypot(shape.remainder)
             }),
+            remainder: shape.map_or(0.0, |shape| shape.remainder / shape.tolerance.remainder),
             is_mirrored: self.run.crash_from_stamped.is_mirrored(),
         }
     }

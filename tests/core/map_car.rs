@@ -439,6 +439,30 @@ fn of_doubtful_matches_the_one_that_fits_clearly_better_is_mapped_and_gives_its_
     assert_eq!(own["files"][0], "own.k");
 }
 #[test]
+fn a_part_that_is_not_in_the_car_is_mapped_onto_none_of_several_shapes() {
+    let alien = [("alien.dynain", [60.0, 150.0], [38, 26], 8.0)];
+    let parts = [
+        ([240.0, 140.0], [30, 20]),
+        ([235.0, 100.0], [28, 20]),
+        ([245.0, 50.0], [30, 18]),
+    ];
+    let (code, rows) = map_bumped(&parts, &alien);
+    assert_eq!(code, Some(1), "{}", rows[0]);
+    assert_eq!(rows[0]["state"], "none");
+    let absent = rows[0]["reasons"][0]["absent"].as_array().unwrap();
+    assert_eq!(absent.len(), 3, "{}", rows[0]);
+    // Copies of one part are no sign of that: another version of it may have been stamped.
+    let (code, rows) = map_bumped(&[parts[0]; 3], &alien);
+    assert_eq!(code, Some(0), "{}", rows[0]);
+    assert_eq!(rows[0]["state"], "check");
+    let mut reasons = rows[0]["reasons"].as_array().unwrap().iter();
+    assert!(
+        reasons.any(|reason| reason["doubtful"].as_f64() > Some(2.0)),
+        "{}",
+        rows[0]
+    );
+}
+#[test]
 fn half_of_a_symmetric_sheet_is_told_with_its_mirror_image() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);

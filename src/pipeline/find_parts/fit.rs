@@ -1,9 +1,9 @@
-//! How well a stamped part fits a crash part.
+//! How well a stamped part fits a crash part, and whether the right one is there at all.
 
 use crate::assess::Verdict;
 
 /// Parts about as alike as the one that was found may fit as well.
-const AS_ALIKE: f64 = 0.97;
+pub(super) const AS_ALIKE: f64 = 0.97;
 /// They do if their surfaces lie at most so many times as far apart, or farther by a distance that means nothing.
 const AS_CLOSE: f64 = 1.25;
 /// Where the best leaves something to look at, others are tried too, but for those that are less alike than this, if
@@ -12,6 +12,15 @@ const MUCH_LESS_ALIKE: f64 = 0.8;
 const WELL_COVERED: f64 = 0.8;
 /// A part that is covered by so much more is another than the first.
 const MORE_COVERED: f64 = 0.15;
+/// Surfaces that differ by so many tolerances are hardly those of one part,
+const HARDLY_ONE_SHAPE: f64 = 2.0;
+/// and none is right if so many signs say so: parts of other shapes that lie at most so many times as far apart, and
+/// another gauge.
+const SIGNS: usize = 2;
+const NO_CLOSER: f64 = 1.5;
+/// Forming changes the mean thickness by less.
+const SAME_GAUGE: std::ops::RangeInclusive<f64> = 0.75..=1.25;
+
 /// How well a stamped part fits.
 #[derive(Debug, Clone, Copy)]
 pub struct Fit {
@@ -28,6 +37,8 @@ pub struct Fit {
     pub(super) unremarkable: f64,
     /// How far the shapes differ, bends counted and facets not.
     pub(super) apart: f64,
+    /// How far they differ beside bends, in tolerances.
+    pub(super) remainder: f64,
     /// The stamped part is taken for one of the other hand.
     pub(super) is_mirrored: bool,
 }
@@ -79,6 +90,48 @@ impl Fit {
     }
 }
 
+/// Whether the crash part that a stamped part belongs to is among those that were asked.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Presence {
+    /// Nothing speaks against it.
+    Likely,
+    /// The surfaces of the best differ by so many tolerances.
+    Doubtful(f64),
+    /// So do those of the best, parts of other shapes lie about as close, and all in all none is right.
+    Absent {
+        /// Ids of these parts, the best first.
+        parts: Vec<u64>,
+        /// Mean thickness of the stamped part over that of the best, where that is another gauge.
+        gauge: Option<f64>,
+    },
+}
+
+impl Presence {
+    /// What the fit of the `best` part says beside those of parts that have `other_shapes`, one for each shape. `gauge`
+    /// is the thickness of the stamped part over that of the best.
+    pub(super) fn of(
+        (best, fit): (u64, &Fit),
+        other_shapes: &[(u64, Fit)],
+        gauge: Option<f64>,
+    ) -> Self {
+        if fit.remainder <= HARDLY_ONE_SHAPE {
+            return Self::Likely;
+        }
+        let close = other_shapes
+            .iter()
+            .filter(|(_, other)| other.rmse <= NO_CLOSER * fit.rmse);
+        let mut parts = vec![best];
+        parts.extend(close.map(|(id, _)| *id));
+        let gauge = gauge.filter(|gauge| !SAME_GAUGE.contains(gauge));
+        // Another version of the part has its gauge and lies closer than any other part.
+        if parts.len() > 1 && parts.len() - 1 + usize::from(gauge.is_some()) >= SIGNS {
+            Self::Absent { parts, gauge }
+        } else {
+            Self::Doubtful(fit.remainder)
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -92,6 +145,7 @@ mod tests {
             rmse,
             unremarkable: 0.1,
             apart: rmse,
+            remainder: 0.0,
             is_mirrored: false,
         }
     }
@@ -152,5 +206,31 @@ mod tests {
         };
         let least = [good, covered, in_part].map(|fit| fit.least_alike());
         assert_eq!(least, [Some(AS_ALIKE), Some(MUCH_LESS_ALIKE), None]);
+    }
+
+    #[test]
+    fn several_shapes_that_fit_as_badly_say_that_the_part_is_not_there() {
+        let with = |rmse, remainder| Fit {
+            remainder,
+            ..fit(Verdict::Check, 0, rmse)
+        };
+        let best = with(2.1, 5.5);
+        let others = [
+            (2, with(2.6, 4.2)),
+            (3, with(2.7, 5.2)),
+            (4, with(3.4, 3.4)),
+        ];
+        let presence = |n: usize, gauge| Presence::of((1, &best), &others[..n], gauge);
+        let absent = |parts: &[u64], gauge| Presence::Absent {
+            parts: parts.to_vec(),
+            gauge,
+        };
+        assert_eq!(presence(3, Some(0.95)), absent(&[1, 2, 3], None));
+        assert_eq!(presence(1, Some(0.65)), absent(&[1, 2], Some(0.65)));
+        // Another version of the part, or one of another gauge, is looked at.
+        assert_eq!(presence(1, Some(0.95)), Presence::Doubtful(5.5));
+        assert_eq!(presence(0, Some(0.65)), Presence::Doubtful(5.5));
+        let sure = with(0.8, 0.3);
+        assert_eq!(Presence::of((1, &sure), &others, None), Presence::Likely);
     }
 }

@@ -12,7 +12,7 @@ pub use record::{CAR_COLUMNS, CarCopy, CarReason, CarRecord, CarRow, CarState};
 
 use super::PipelineError;
 use super::error::unless_cancelled;
-use super::find_parts::{Fit, FoundParts, find_parts, guessed_units, mirrored_twin};
+use super::find_parts::{Fit, FoundParts, Presence, find_parts, guessed_units, mirrored_twin};
 use super::load::{LoadSettings, LoadedPart, load, prepare};
 use super::map::{
     DefaultThickness, LEAST_AREA, MapOutput, MapRecipe, MapRecord, MapRun, NewStates, PlacedPart,
@@ -122,6 +122,8 @@ struct Claim {
     /// Whether the match is good but for errors of the reader.
     is_good: bool,
     fit: Fit,
+    /// How many tolerances the surfaces differ by, where the right part is perhaps not there.
+    doubt: Option<f64>,
 }
 
 /// What was made of the stamped parts of one group.
@@ -181,7 +183,7 @@ pub fn map_car(
                     let unread = unread.iter().cloned();
                     rows[at].reasons.extend(unread.map(CarReason::Unread));
                     match given {
-                        Some(given) => take(&mut rows[at], &made, given),
+                        Some(given) => take(&mut rows[at], &made, (given, claims[&at].doubt)),
                         None => rows[at].reasons.push(CarReason::Displaced),
                     }
                 }
@@ -241,7 +243,8 @@ fn claims(
         });
         match unless_cancelled(found)? {
             Ok(Some((found, lengths))) => {
-                claims.insert(at, claim(row, &found, lengths));
+                let claim = claim(row, &found, lengths);
+                claims.extend(claim.map(|claim| (at, claim)));
             }
             Ok(None) => {}
             Err(error) => row.reasons.push(CarReason::Failed(error.to_string())),
@@ -273,8 +276,13 @@ fn copies(
     Ok(copies)
 }
 
-/// Puts what was found into the row.
-fn claim(row: &mut CarRow, found: &FoundParts, lengths: Lengths) -> Claim {
+/// Puts what was found into the row; `None` where that says that the right part is not there.
+fn claim(row: &mut CarRow, found: &FoundParts, lengths: Lengths) -> Option<Claim> {
+    if let Presence::Absent { parts, gauge } = &found.presence {
+        row.reasons.push(CarReason::Absent(parts.clone()));
+        row.reasons.extend(gauge.map(CarReason::Gauge));
+        return None;
+    }
     let run = &found.found.run;
     row.crash_parts = found.found.part.chosen_part_ids();
     row.crash_from_stamped = Some(run.crash_from_stamped.to_rows());
@@ -288,17 +296,21 @@ fn claim(row: &mut CarRow, found: &FoundParts, lengths: Lengths) -> Claim {
     if !found.rivals.is_empty() {
         row.reasons.push(CarReason::Rivals(found.rivals.clone()));
     }
-    Claim {
+    Some(Claim {
         ids: row.crash_parts.clone(),
         pose: run.crash_from_stamped,
         verdict: run.assessment.verdict,
         is_good: run.assessment.verdict_as_read() == Verdict::Good,
         fit: found.found.fit(),
-    }
+        doubt: match found.presence {
+            Presence::Doubtful(times) => Some(times),
+            _ => None,
+        },
+    })
 }
 
 /// Puts what was mapped into the row of a part.
-fn take(row: &mut CarRow, made: &Made, given: &Given) {
+fn take(row: &mut CarRow, made: &Made, (given, doubt): (&Given, Option<f64>)) {
     let record = &made.record;
     let conflict = record.area_share(Status::Conflict);
     if conflict > CONFLICT {
@@ -308,6 +320,7 @@ fn take(row: &mut CarRow, made: &Made, given: &Given) {
         row.reasons.push(CarReason::GivesNothing);
         return;
     }
+    row.reasons.extend(doubt.map(CarReason::Doubtful));
     row.title.clone_from(&made.title);
     row.mapped_area = Some(given.area);
     row.thickness = Some(given.thickness).filter(|t| t.is_finite());

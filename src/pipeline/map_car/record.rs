@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::assess::Verdict;
 use crate::pipeline::load::tools_line;
 use crate::registration::UnitGuess;
-use crate::text::{counted, length, parts_by_id, percent};
+use crate::text::{counted, fixed, length, parts_by_id, percent};
 
 /// How certain it is that a stamped part lies where it belongs, with all its values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -56,6 +56,12 @@ pub enum CarReason {
     Displaced,
     /// No element takes its values: others lie there that are as near.
     GivesNothing,
+    /// The crash part it belongs to is not there: it fits these, which are shaped differently, about as badly.
+    Absent(Vec<u64>),
+    /// It is so many times as thick as the first of these.
+    Gauge(f64),
+    /// The crash part is perhaps not there: the surfaces differ by so many tolerances.
+    Doubtful(f64),
     /// Only this share of the area has values.
     Area(f64),
     /// The mapped thickness is so many times the section's.
@@ -103,6 +109,16 @@ impl CarReason {
             Self::GivesNothing => {
                 "no element takes its values: another stamped part lies there as well".to_owned()
             }
+            Self::Absent(ids) => format!(
+                "its crash part does not seem to be there: it fits {}, which differ in shape, about as badly \
+                 (shapematch map with --crash-part maps it all the same)",
+                parts_by_id(ids)
+            ),
+            Self::Gauge(ratio) => format!("it is {} times as thick as the first", length(*ratio)),
+            Self::Doubtful(times) => format!(
+                "its crash part may not be there: the surfaces differ by {} times what is accepted",
+                fixed(*times, 1)
+            ),
             Self::Area(share) => format!("{} of the area has values", percent(*share)),
             Self::Thickness(ratio) => {
                 format!(
