@@ -438,6 +438,7 @@ fn of_doubtful_matches_the_one_that_fits_clearly_better_is_mapped_and_gives_its_
     );
     assert_eq!(own["files"][0], "own.k");
 }
+
 #[test]
 fn a_part_that_is_not_in_the_car_is_mapped_onto_none_of_several_shapes() {
     let alien = [("alien.dynain", [60.0, 150.0], [38, 26], 8.0)];
@@ -462,6 +463,7 @@ fn a_part_that_is_not_in_the_car_is_mapped_onto_none_of_several_shapes() {
         rows[0]
     );
 }
+
 #[test]
 fn half_of_a_symmetric_sheet_is_told_with_its_mirror_image() {
     let folder = tempfile::tempdir().unwrap();
