@@ -443,6 +443,17 @@ fn the_largest_deviations_are_seen_whole_without_scrolling() {
     }
 }
 
+/// The verdict as it is drawn after the match of what is open.
+fn verdict_after_match(window: &mut Window) -> Painted {
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Enter);
+    window.run_steps(2);
+    finish(window);
+    window.run_steps(40);
+    let is_verdict = |text: &Painted| text.text.ends_with("GOOD") && text.rect.height() > 18.0;
+    let mut texts = texts(window).into_iter();
+    texts.find(is_verdict).expect("the verdict is drawn")
+}
+
 /// A result that comes into sight in a column lower than its card shows its verdict.
 #[test]
 fn the_verdict_is_seen_where_its_card_is_higher_than_the_column() {
@@ -451,13 +462,7 @@ fn the_verdict_is_seen_where_its_card_is_higher_than_the_column() {
     finish(&mut window);
     window.set_size(Vec2::new(1000.0, 360.0));
     window.run_steps(4);
-    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Enter);
-    window.run_steps(2);
-    finish(&mut window);
-    window.run_steps(40);
-    let texts = texts(&window);
-    let is_verdict = |text: &&Painted| text.text.ends_with("GOOD") && text.rect.height() > 18.0;
-    let verdict = texts.iter().find(is_verdict).expect("the verdict is drawn");
+    let verdict = verdict_after_match(&mut window);
     assert!(
         verdict.rect.top() >= verdict.clip.top(),
         "the verdict is cut"
@@ -472,13 +477,7 @@ fn the_verdict_is_in_sight_once_the_sections_above_have_folded() {
         window.set_size(Vec2::new(1280.0, height));
         click(&mut window, "Open the example pair");
         finish(&mut window);
-        window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Enter);
-        window.run_steps(2);
-        finish(&mut window);
-        window.run_steps(40);
-        let texts = texts(&window);
-        let is_verdict = |text: &&Painted| text.text.ends_with("GOOD") && text.rect.height() > 18.0;
-        let verdict = texts.iter().find(is_verdict).expect("the verdict is drawn");
+        let verdict = verdict_after_match(&mut window);
         let column = verdict.clip.expand(0.5).y_range();
         let is_seen = column.contains(verdict.rect.top()) && column.contains(verdict.rect.bottom());
         assert!(is_seen, "{height}: {} of {}", verdict.rect, verdict.clip);

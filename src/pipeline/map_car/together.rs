@@ -22,12 +22,12 @@ pub(super) fn that_give_way(crash: &LoadedPart, members: &[(&LoadedPart, &Claim)
         .map(|(part, claim)| covers(crash, part, &claim.pose))
         .collect();
     let is_in_place = |own: &[bool], other: &[bool]| {
-        let (mut n_own, mut n_both) = (0.0, 0.0);
-        for (own, other) in own.iter().zip(other) {
-            n_own += f64::from(u8::from(*own));
-            n_both += f64::from(u8::from(*own && *other));
-        }
-        n_both > IN_ITS_PLACE * n_own
+        let n_own = own.iter().filter(|lies| **lies).count();
+        let both = own
+            .iter()
+            .zip(other)
+            .filter(|(own, other)| **own && **other);
+        both.count() as f64 > IN_ITS_PLACE * n_own as f64
     };
     let mut order: Vec<usize> = (0..members.len()).collect();
     order.sort_by(|a, b| {

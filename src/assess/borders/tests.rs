@@ -1,0 +1,114 @@
+//! Borders of parts whose difference is known.
+
+use super::*;
+use crate::geometry::TriMesh;
+
+/// A sheet of `n` by 20 cells of one millimetre without the cells in rows and columns 4 to 7.
+fn sheet(n: usize, hole_at: usize) -> Surface {
+    noisy_sheet(n, hole_at, 0.0)
+}
+
+/// The same, every node up to `noise` above or below.
+fn noisy_sheet(n: usize, hole_at: usize, noise: f64) -> Surface {
+    let points = (0..=20 * (n + 1) + n).map(|i| {
+        let (x, y) = (i % (n + 1), i / (n + 1));
+        // Digits of a sine that have nothing to do with each other.
+        let height = 2.0 * (43_758.545 * (12.99 * i as f64).sin()).rem_euclid(1.0) - 1.0;
+        Point3::new(x as f64, y as f64, noise * height)
+    });
+    let cells = (0..n * 20).map(|i| (i % n, i / n));
+    let is_hole =
+        |(x, y): &(usize, usize)| (hole_at..hole_at + 4).contains(x) && (4..8).contains(y);
+    let triangles = cells.filter(|cell| !is_hole(cell)).flat_map(|(x, y)| {
+        let a = (y * (n + 1) + x) as u32;
+        let up = a + n as u32 + 1;
+        [[a, a + 1, up + 1], [a, up + 1, up]]
+    });
+    let mesh = TriMesh::new(points.collect(), triangles.collect()).unwrap();
+    Surface::new(&mesh, "source").unwrap()
+}
+
+/// The borders of parts that lie where they are.
+fn compared(source: &Surface, target: &Surface) -> Borders {
+    BorderComparison::new([source, target], 1.0, 3.0).at(&Similarity::identity())
+}
+
+#[test]
+fn a_longer_part_misses_its_borders_and_a_shifted_hole_is_found() {
+    let (plain, longer, moved) = (sheet(30, 5), sheet(32, 5), sheet(30, 6));
+    let least = |borders: &Borders| borders.pairs.iter().map(|p| p.gap).fold(0.0, f64::min);
+    let same = compared(&plain, &plain);
+    assert!(same.pairs.len() > 500 && same.pairs.iter().all(|p| p.gap == 0.0));
+    assert_eq!(same.holes.len(), 1);
+    let other = compared(&plain, &longer);
+    assert!((least(&other) + 2.0).abs() < 1e-9);
+    let hole = compared(&plain, &moved);
+    assert_eq!(hole.holes.len(), 1);
+    assert!((hole.holes[0].off + Vector3::x()).norm() < 1e-9);
+}
+
+#[test]
+fn noise_that_bends_every_edge_hides_no_border_and_widens_no_hole() {
+    let (plain, noisy) = (sheet(30, 5), noisy_sheet(30, 5, 0.8));
+    for pair in [[&plain, &noisy], [&noisy, &plain]] {
+        let borders = compared(pair[0], pair[1]);
+        assert!(borders.share() > 0.95, "{}", borders.share());
+        assert!(borders.pairs.iter().all(|p| p.gap.abs() < 0.6));
+        assert_eq!(borders.holes.len(), 1);
+        assert!(borders.holes[0].wider < 0.15, "{}", borders.holes[0].wider);
+    }
+}
+
+#[test]
+fn a_hole_is_missed_by_no_shift() {
+    let plain = sheet(30, 5);
+    for shift in 1..=12 {
+        let borders = compared(&plain, &sheet(30, 5 + shift));
+        let off = borders.all_holes().map(|pair| pair.off.norm()).next();
+        let n_alone = borders.missing.each_ref().map(Vec::len);
+        match off {
+            Some(off) => assert!((off - shift as f64).abs() < 1e-9 && n_alone == [0, 0]),
+            None => assert_eq!(n_alone, [1, 1], "{shift}"),
+        }
+    }
+}
+
+#[test]
+fn holes_that_overlap_are_moved_or_resized_but_no_pilot_hole_is() {
+    let hole = |x: f64, radius: f64| Hole {
+        center: Point3::new(x, 0.0, 0.0),
+        radius,
+        length: 0.0,
+        normal: Vector3::z(),
+    };
+    for (off, [a, b], expected) in [
+        (0.0, [6.0, 11.0], true),
+        (0.0, [22.0, 10.0], true),
+        (12.0, [12.0, 12.0], true),
+        (25.0, [12.0, 12.0], false),
+        // A pilot hole in the middle of an opening, and one somewhere within it.
+        (0.0, [5.0, 60.0], false),
+        (30.0, [20.0, 60.0], false),
+    ] {
+        for [a, b] in [[a, b], [b, a]] {
+            assert_eq!(
+                overlaps(&hole(0.0, a), &hole(off, b)),
+                expected,
+                "{off} {a} {b}"
+            );
+        }
+    }
+    let steep = Hole {
+        normal: Vector3::x(),
+        ..hole(1.0, 6.0)
+    };
+    assert!(!overlaps(&hole(0.0, 6.0), &steep));
+}
+
+#[test]
+fn holes_on_different_sides_are_missing_both_ways() {
+    let (left, right) = (sheet(30, 3), sheet(30, 22));
+    let borders = compared(&left, &right);
+    assert!(borders.holes.is_empty());
+    assert_eq!(borders.missing.each_ref().map(Vec::len), [1, 1]);
+}
