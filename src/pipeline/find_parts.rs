@@ -81,7 +81,8 @@ pub fn find_parts(
         monitor,
     };
     let mut search = Search::default();
-    let candidates = candidates(parts, monitor)?;
+    let signatures = Signatures::of(parts, monitor)?;
+    let candidates = signatures.candidates();
     let n_tried = candidates.len().min(MOST_TRIED) as u64;
     for (n_done, (likeness, ids)) in (0_u64..).zip(candidates).take(MOST_TRIED) {
         if search.is_over(likeness) || monitor.stop_requested() {
@@ -101,7 +102,7 @@ pub fn find_parts(
     let is_rival = |(id, _): &&(u64, Fit)| rivals.contains(id);
     let singles: Vec<(u64, Fit)> = search.singles.iter().filter(is_rival).copied().collect();
     Ok(Some(FoundParts {
-        presence: presence(parts, &found, &singles, monitor)?,
+        presence: presence(parts, &found, &singles, &signatures),
         found,
         rivals,
         took_ms: millis_since(begin),
@@ -114,7 +115,7 @@ pub fn guessed_units(
     parts: PerRole<&LoadedPart>,
     monitor: &Monitor,
 ) -> Result<Option<UnitGuess>, Cancelled> {
-    let Signatures { stamped, crash } = signatures(parts, monitor)?;
+    let Signatures { stamped, crash } = Signatures::of(parts, monitor)?;
     let Some(stamped) = stamped else {
         return Ok(None);
     };
@@ -137,20 +138,13 @@ fn presence(
     parts: PerRole<&LoadedPart>,
     found: &Found,
     rivals: &[(u64, Fit)],
-    monitor: &Monitor,
-) -> Result<Presence, Cancelled> {
+    signatures: &Signatures,
+) -> Presence {
     let ids = found.part.chosen_part_ids();
-    let moments = if rivals.is_empty() {
-        BTreeMap::new()
-    } else {
-        let factor = parts.crash.settings.length_factor;
-        moments_of_parts(&parts.crash.model, factor, monitor)?
-    };
-    let signature = |id: &u64| moments.get(id)?.signature(None);
-    let mut shapes: Vec<Signature> = ids.iter().filter_map(signature).collect();
+    let mut shapes: Vec<Signature> = ids.iter().filter_map(|id| signatures.shape(*id)).collect();
     let mut others = Vec::new();
     for (id, of_rival) in rivals {
-        let Some(own) = signature(id) else {
+        let Some(own) = signatures.shape(*id) else {
             continue;
         };
         if shapes
@@ -164,7 +158,7 @@ fn presence(
     let [stamped, crash] = [parts.stamped, &found.part].map(LoadedPart::mean_thickness);
     let gauge = stamped.zip(crash).map(|(stamped, crash)| stamped / crash);
     let first = ids.first().copied().unwrap_or_default();
-    Ok(Presence::of((first, &found.fit()), &others, gauge))
+    Presence::of((first, &found.fit()), &others, gauge)
 }
 
 /// The rivals that were not taken in as further parts of the sheet.
@@ -179,10 +173,10 @@ pub fn is_part_open(parts: PerRole<&LoadedPart>) -> bool {
     if parts.stamped.chosen_part_ids().len() != 1 || parts.crash.chosen_part_ids().len() < 2 {
         return false;
     }
-    let candidates = candidates(parts, &Monitor::silent());
-    let candidates = candidates.expect("nobody cancels a silent monitor");
-    let (singles, together): (Vec<_>, Vec<_>) =
-        candidates.into_iter().partition(|(_, ids)| ids.len() == 1);
+    let signatures = Signatures::of(parts, &Monitor::silent());
+    let signatures = signatures.expect("nobody cancels a silent monitor");
+    let candidates = signatures.candidates().into_iter();
+    let (singles, together): (Vec<_>, Vec<_>) = candidates.partition(|(_, ids)| ids.len() == 1);
     let together = together.first().map_or(0.0, |(likeness, _)| *likeness);
     let singles = singles
         .into_iter()
@@ -367,52 +361,59 @@ struct Signatures {
     crash: Vec<(Vec<u64>, Signature)>,
 }
 
-fn signatures(parts: PerRole<&LoadedPart>, monitor: &Monitor) -> Result<Signatures, Cancelled> {
-    let moments =
-        |part: &LoadedPart| moments_of_parts(&part.model, part.settings.length_factor, monitor);
-    let moments = parts.map(moments).transpose()?;
-    let used = parts.map(|part| part.chosen_part_ids());
-    let all_of = |ids: &[u64], role: &BTreeMap<u64, Moments>| {
-        let of_parts = ids.iter().filter_map(|id| role.get(id));
-        of_parts.fold(Moments::default(), |sum, moments| sum.and(moments))
-    };
-    let stamped = all_of(&used.stamped, &moments.stamped);
-    let stamped = stamped.signature(parts.stamped.mean_thickness());
-    let factor = parts.crash.settings.length_factor;
-    let summaries = parts.crash.model.part_summaries();
-    let mut crash: Vec<(Vec<u64>, Signature)> = Vec::new();
-    for row in summaries.iter().filter(|row| used.crash.contains(&row.id)) {
-        let thickness = row.thickness.map(|thickness| thickness * factor);
-        let own = moments.crash.get(&row.id);
-        if let Some(own) = own.and_then(|own| own.signature(thickness)) {
-            crash.push((vec![row.id], own));
+impl Signatures {
+    fn of(parts: PerRole<&LoadedPart>, monitor: &Monitor) -> Result<Self, Cancelled> {
+        let moments =
+            |part: &LoadedPart| moments_of_parts(&part.model, part.settings.length_factor, monitor);
+        let moments = parts.map(moments).transpose()?;
+        let used = parts.map(|part| part.chosen_part_ids());
+        let all_of = |ids: &[u64], role: &BTreeMap<u64, Moments>| {
+            let of_parts = ids.iter().filter_map(|id| role.get(id));
+            of_parts.fold(Moments::default(), |sum, moments| sum.and(moments))
+        };
+        let stamped = all_of(&used.stamped, &moments.stamped);
+        let stamped = stamped.signature(parts.stamped.mean_thickness());
+        let factor = parts.crash.settings.length_factor;
+        let summaries = parts.crash.model.part_summaries();
+        let mut crash: Vec<(Vec<u64>, Signature)> = Vec::new();
+        for row in summaries.iter().filter(|row| used.crash.contains(&row.id)) {
+            let thickness = row.thickness.map(|thickness| thickness * factor);
+            let own = moments.crash.get(&row.id);
+            if let Some(own) = own.and_then(|own| own.signature(thickness)) {
+                crash.push((vec![row.id], own));
+            }
         }
-    }
-    if used.crash.len() > 1 {
-        let together = all_of(&used.crash, &moments.crash);
-        if let Some(together) = together.signature(parts.crash.mean_thickness()) {
-            crash.push((used.crash, together));
+        if used.crash.len() > 1 {
+            let together = all_of(&used.crash, &moments.crash);
+            if let Some(together) = together.signature(parts.crash.mean_thickness()) {
+                crash.push((used.crash, together));
+            }
         }
+        Ok(Self { stamped, crash })
     }
-    Ok(Signatures { stamped, crash })
-}
 
-/// Every chosen part alone, and all together, with their likeness to the stamped part, the most alike first.
-fn candidates(
-    parts: PerRole<&LoadedPart>,
-    monitor: &Monitor,
-) -> Result<Vec<(f64, Vec<u64>)>, Cancelled> {
-    let Signatures { stamped, crash } = signatures(parts, monitor)?;
-    let Some(stamped) = stamped else {
-        return Ok(Vec::new());
-    };
-    let all = crash.into_iter();
-    let mut found: Vec<(f64, Vec<u64>)> = all
-        .map(|(ids, own)| (stamped.likeness(&own), ids))
-        .collect();
-    found.retain(|(likeness, _)| *likeness >= LEAST_LIKENESS);
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    Ok(found)
+    /// That of a crash part, whatever its thickness.
+    fn shape(&self, id: u64) -> Option<Signature> {
+        let mut alone = self.crash.iter().filter(|(ids, _)| *ids == [id]);
+        alone.next().map(|(_, own)| Signature {
+            thickness: None,
+            ..*own
+        })
+    }
+
+    /// Every chosen part alone, and all together, with their likeness to the stamped part, the most alike first.
+    fn candidates(&self) -> Vec<(f64, Vec<u64>)> {
+        let Some(stamped) = &self.stamped else {
+            return Vec::new();
+        };
+        let all = self.crash.iter();
+        let mut found: Vec<(f64, Vec<u64>)> = all
+            .map(|(ids, own)| (stamped.likeness(own), ids.clone()))
+            .collect();
+        found.retain(|(likeness, _)| *likeness >= LEAST_LIKENESS);
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        found
+    }
 }
 
 /// Parts of which more than half lies on what the found ones leave of the stamped part.
