@@ -76,6 +76,12 @@ impl JobBoard {
         self.running.as_ref().is_some_and(runs) || self.waiting.iter().any(|(k, _)| *k == key)
     }
 
+    /// True if an output is being written or waits for it, and was not told to go.
+    pub fn is_exporting(&self) -> bool {
+        let runs = |job: &RunningJob| job.key.is_export() && !job.is_cancelling;
+        self.running.as_ref().is_some_and(runs) || self.waiting.iter().any(|(k, _)| k.is_export())
+    }
+
     /// True if any job runs or waits.
     pub fn is_busy(&self) -> bool {
         self.running.is_some() || !self.waiting.is_empty()

@@ -51,7 +51,7 @@ impl AppState {
     fn is_wanted(&self, key: JobKey, stamp: Stamp) -> bool {
         let now = self.document.stamp();
         match key {
-            JobKey::Load(_) | JobKey::OpenProject | JobKey::Export => true,
+            JobKey::Load(_) | JobKey::OpenProject | JobKey::Export(_) => true,
             // They say themselves which file and which crash part they belong to.
             JobKey::LoadFurther(_) | JobKey::PlaceFurther => true,
             JobKey::Reselect(role) | JobKey::Reduce(role) => {
@@ -241,7 +241,7 @@ impl AppState {
                 "Nothing was loaded; choose another file or fix this one"
             }
             JobKey::PlaceFurther => FURTHER_WITHOUT_POSE,
-            JobKey::Export => "Nothing was written or copied",
+            JobKey::Export(_) => "Nothing was written or copied",
             _ => "Parts and pose are as they were",
         };
         let text = format!("{}. {what_now}", capital(&message));
@@ -300,6 +300,6 @@ fn step_of(key: JobKey) -> (LogStep, Option<Role>) {
         JobKey::Map | JobKey::CompareMapping => (LogStep::Map, None),
         JobKey::Sweep => (LogStep::Sweep, None),
         JobKey::OpenProject => (LogStep::Project, None),
-        JobKey::Export => (LogStep::Export, None),
+        JobKey::Export(_) => (LogStep::Export, None),
     }
 }

@@ -9,6 +9,8 @@ use crate::pipeline::outputs::{Output, OutputInput, Refusal, Target, check_targe
 /// What is to be made and where it goes.
 #[derive(Debug, Clone)]
 pub struct ExportRequest {
+    /// A number of its own.
+    pub number: u64,
     /// File or clipboard.
     pub to: Destination,
     /// What is written.
@@ -39,7 +41,9 @@ pub struct Exported {
 
 /// Makes and writes. A file that was read is never overwritten.
 pub(super) fn export(request: ExportRequest, monitor: &Monitor) -> Result<Exported, JobError> {
-    let ExportRequest { to, output, input } = request;
+    let ExportRequest {
+        to, output, input, ..
+    } = request;
     monitor.progress("export", 0, None);
     monitor.check()?;
     match &to {

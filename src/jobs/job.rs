@@ -58,8 +58,8 @@ pub enum JobKey {
     Sweep,
     /// Reading a project with its parts.
     OpenProject,
-    /// Writing of outputs.
-    Export,
+    /// Writing of an output, by its number: none takes the place of another that waits.
+    Export(u64),
 }
 
 impl JobKey {
@@ -71,6 +71,11 @@ impl JobKey {
             Self::MeasureLevel(role) => Some(Self::MeasureLevel(role.other())),
             _ => None,
         }
+    }
+
+    /// True for the writing of an output.
+    pub fn is_export(self) -> bool {
+        matches!(self, Self::Export(_))
     }
 
     /// What the running job does, for the status line.
@@ -94,7 +99,7 @@ impl JobKey {
             Self::Overlap => "Measuring the overlap",
             Self::Sweep => "Running the sweep",
             Self::OpenProject => "Opening the project",
-            Self::Export => "Writing",
+            Self::Export(_) => "Writing",
         }
     }
 }
@@ -353,7 +358,7 @@ impl JobKind {
             Self::Overlap(_) => JobKey::Overlap,
             Self::Sweep(_) => JobKey::Sweep,
             Self::OpenProject(_) => JobKey::OpenProject,
-            Self::Export(_) => JobKey::Export,
+            Self::Export(request) => JobKey::Export(request.number),
         }
     }
 }

@@ -274,7 +274,12 @@ fn matches(parts: &PerRole<Arc<LoadedPart>>, try_one: &impl Fn(&str, &JobKind)) 
         let path = folder
             .path()
             .join(format!("out.{}", output.extensions()[0].1));
-        let (to, input) = (Destination::File(path), input.clone());
-        try_one(name, &JobKind::Export(ExportRequest { to, output, input }));
+        let request = ExportRequest {
+            number: 1,
+            to: Destination::File(path),
+            output,
+            input: input.clone(),
+        };
+        try_one(name, &JobKind::Export(request));
     }
 }

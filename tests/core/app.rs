@@ -156,8 +156,9 @@ pub fn shifted(x: f64) -> Similarity {
 #[derive(Default)]
 pub struct Window {
     pub state: AppState,
-    /// Jobs that are not answered at once.
+    /// Jobs that are not answered at once: the first runs, the others wait.
     pub held: Vec<(JobId, JobKind, Stamp)>,
+    /// Jobs wait until [`Window::finish_held`], so that commands can come before their end.
     pub holds: bool,
     n_jobs: u64,
     /// Does the jobs in place of the made-up files and matches.
@@ -228,12 +229,26 @@ impl Window {
     pub fn submit(&mut self, kind: JobKind, stamp: Stamp) {
         self.n_jobs += 1;
         let id = JobId(self.n_jobs);
-        if self.holds {
+        if !self.holds {
             self.tell(id, kind.key(), stamp, JobStage::Started);
-            self.held.push((id, kind, stamp));
-        } else {
-            self.tell(id, kind.key(), stamp, JobStage::Started);
-            self.finish(id, kind, stamp);
+            return self.finish(id, kind, stamp);
+        }
+        let waits = |at: &usize| self.held[*at].1.key() == kind.key();
+        let replaced = (1..self.held.len()).find(waits);
+        let replaced = replaced.map(|at| self.held.remove(at));
+        self.held.push((id, kind, stamp));
+        if let Some((id, kind, stamp)) = replaced {
+            self.tell(id, kind.key(), stamp, JobStage::Cancelled);
+        }
+        self.begin_held();
+    }
+
+    /// As the worker does, takes up the first job as soon as none runs.
+    fn begin_held(&mut self) {
+        let first = self.held.first();
+        let first = first.map(|(id, kind, stamp)| (*id, kind.key(), *stamp));
+        if let Some((id, key, stamp)) = first.filter(|_| self.state.jobs.running().is_none()) {
+            self.tell(id, key, stamp, JobStage::Started);
         }
     }
 
@@ -245,11 +260,14 @@ impl Window {
         for (id, kind, stamp) in gone {
             self.tell(id, kind.key(), stamp, JobStage::Cancelled);
         }
+        self.begin_held();
     }
 
     pub fn finish_held(&mut self) {
         self.holds = false;
-        for (id, kind, stamp) in std::mem::take(&mut self.held) {
+        while !self.held.is_empty() {
+            self.begin_held();
+            let (id, kind, stamp) = self.held.remove(0);
             self.finish(id, kind, stamp);
         }
     }

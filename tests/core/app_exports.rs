@@ -86,6 +86,23 @@ fn a_card_for_a_file_in_another_unit_is_answered_with_the_converted_file() {
     );
 }
 
+#[test]
+fn every_output_that_is_asked_for_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let paths = ["a.txt", "b.txt", "c.txt"].map(|name| folder.path().join(name));
+    let mut window = Window::with_both();
+    window.holds = true;
+    for path in paths.clone() {
+        let kind = Output::Log;
+        window.apply(ExportCommand::Write { kind, path });
+    }
+    assert!(window.state.jobs.is_exporting());
+    window.finish_held();
+    assert!(!window.state.jobs.is_exporting());
+    let are_there = paths.map(|path| path.exists());
+    assert_eq!(are_there, [true; 3]);
+}
+
 /// Asserts that a command line has all these pieces.
 fn assert_has(line: &str, pieces: &[&str]) {
     for piece in pieces {

@@ -73,7 +73,13 @@ impl Matched {
 }
 
 fn try_export(to: Destination, output: Output, input: OutputInput) -> Result<Exported, JobError> {
-    let kind = JobKind::Export(ExportRequest { to, output, input });
+    let number = 1;
+    let kind = JobKind::Export(ExportRequest {
+        number,
+        to,
+        output,
+        input,
+    });
     match PipelineRunner.run(kind, &Monitor::silent())? {
         JobOutput::Exported(exported) => Ok(exported),
         other => panic!("{other:?}"),

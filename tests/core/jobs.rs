@@ -13,9 +13,12 @@ use shapematch::monitor::Monitor;
 use shapematch::pipeline::outputs::{Output, OutputInput};
 
 const PATIENCE: Duration = Duration::from_secs(30);
+/// The place of [`export`] in the queue.
+const EXPORT: JobKey = JobKey::Export(1);
 
 fn export() -> JobKind {
     JobKind::Export(ExportRequest {
+        number: 1,
         to: Destination::File("nowhere.txt".into()),
         output: Output::Log,
         input: OutputInput::default(),
@@ -88,7 +91,7 @@ fn no_second_chunk_starts_after_cancel() {
     let job = chunked(false);
     job.worker.submit(export(), Stamp::default());
     assert_eq!(job.begun.recv_timeout(PATIENCE).unwrap(), 0);
-    job.worker.cancel(JobKey::Export);
+    job.worker.cancel(EXPORT);
     job.go_on.send(()).unwrap();
     assert!(matches!(next(&job.worker).stage, JobStage::Started));
     assert!(matches!(next(&job.worker).stage, JobStage::Cancelled));
@@ -101,7 +104,7 @@ fn no_second_chunk_starts_after_stop_and_the_best_is_kept() {
     let job = chunked(true);
     job.worker.submit(export(), Stamp::default());
     assert_eq!(job.begun.recv_timeout(PATIENCE).unwrap(), 0);
-    job.worker.stop(JobKey::Export);
+    job.worker.stop(EXPORT);
     job.go_on.send(()).unwrap();
     assert!(matches!(next(&job.worker).stage, JobStage::Started));
     assert!(matches!(next(&job.worker).stage, JobStage::Finished(_)));
@@ -120,7 +123,7 @@ fn a_newer_request_replaces_the_waiting_one_only() {
     let replaced = next(&job.worker);
     assert_eq!(replaced.id, waiting);
     assert!(matches!(replaced.stage, JobStage::Cancelled));
-    assert_eq!(job.worker.running(), Some(JobKey::Export));
+    assert_eq!(job.worker.running(), Some(EXPORT));
     job.worker.cancel_all();
     job.go_on.send(()).unwrap();
     let mut ended: Vec<_> = (0..3).map(|_| next(&job.worker)).collect();

@@ -151,7 +151,12 @@ impl Work<'_> {
             return Vec::new();
         }
         let input = self.output_input(output);
-        let request = ExportRequest { to, output, input };
+        let request = ExportRequest {
+            number: self.history.next_revision(),
+            to,
+            output,
+            input,
+        };
         vec![self.start(JobKind::Export(request))]
     }
 

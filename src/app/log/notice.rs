@@ -206,7 +206,8 @@ impl Notices {
 
     /// A job has worked: that it failed before is solved.
     pub(in crate::app) fn withdraw_job(&mut self, job: JobKey) {
-        let is_meant = |n: &&mut Notice| n.of_job == Some(job);
+        let is_again = |of: JobKey| of == job || of.is_export() && job.is_export();
+        let is_meant = |n: &&mut Notice| n.of_job.is_some_and(is_again);
         for notice in self.items.iter_mut().filter(is_meant) {
             notice.is_toast = false;
             notice.is_unread = false;

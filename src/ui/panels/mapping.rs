@@ -229,7 +229,7 @@ fn result_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
             action_button(ui, state, action, look, commands);
         }
     });
-    if state.jobs.is_active(JobKey::Export) {
+    if state.jobs.is_exporting() {
         secondary(ui, "Writing …  Esc gives it up");
     }
 }
