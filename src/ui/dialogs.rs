@@ -144,6 +144,8 @@ pub struct Dialogs {
     typed: Option<String>,
     /// Where a file would be overwritten, and which.
     overwrite: Option<(Question, PathBuf, PathBuf)>,
+    /// What follows from questions that were not asked, because another one is open.
+    refused: Vec<Command>,
 }
 
 impl Default for Dialogs {
@@ -156,6 +158,7 @@ impl Default for Dialogs {
             prompt: None,
             typed: None,
             overwrite: None,
+            refused: Vec::new(),
         }
     }
 }
@@ -211,6 +214,8 @@ impl Dialogs {
 
     fn ask(&mut self, question: Question, ctx: &egui::Context) {
         if self.is_asking {
+            self.refused.extend(closed(&question));
+            ctx.request_repaint();
             return;
         }
         let dialog = file_dialog(&question);
@@ -240,7 +245,7 @@ impl Dialogs {
     /// The answers that came since the last frame.
     pub fn answers(&mut self, ctx: &egui::Context) -> Vec<Command> {
         let answers: Vec<Answer> = self.receiver.try_iter().collect();
-        let mut commands = Vec::new();
+        let mut commands = std::mem::take(&mut self.refused);
         for answer in answers {
             match answer {
                 Answer::Dialog {

@@ -7,7 +7,7 @@ use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
 use crate::app::{Action, Dialog, Document, Effect, LogStep, NoticeLevel};
 use crate::jobs::{JobKind, Located, ProjectFile, ProjectRequest};
-use crate::pipeline::project::{EXTENSION, is_project};
+use crate::pipeline::project::{EXTENSION, with_ending};
 use crate::role::Role;
 
 impl ProjectState {
@@ -171,13 +171,7 @@ fn tell_not_saved(work: &mut Work<'_>, reason: &str, is_elsewhere: bool) {
     work.offer_at(NoticeLevel::Error, LogStep::Project, &text, &offers);
 }
 
-fn write(work: &mut Work<'_>, mut path: PathBuf, replaces: Option<u64>) -> Vec<Effect> {
-    if !is_project(&path) {
-        let mut name = path.file_name().unwrap_or_default().to_os_string();
-        name.push(".");
-        name.push(EXTENSION);
-        path.set_file_name(name);
-    }
-    work.follow(FollowUp::WriteProject(path, replaces));
+fn write(work: &mut Work<'_>, path: PathBuf, replaces: Option<u64>) -> Vec<Effect> {
+    work.follow(FollowUp::WriteProject(with_ending(path), replaces));
     Vec::new()
 }

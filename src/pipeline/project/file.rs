@@ -467,6 +467,17 @@ pub fn is_project(path: &Path) -> bool {
     extension.is_some_and(|extension| extension.eq_ignore_ascii_case(EXTENSION))
 }
 
+/// The path with the ending of projects, which a name with another ending gets too.
+pub fn with_ending(mut path: PathBuf) -> PathBuf {
+    if !is_project(&path) {
+        let mut name = path.file_name().unwrap_or_default().to_os_string();
+        name.push(".");
+        name.push(EXTENSION);
+        path.set_file_name(name);
+    }
+    path
+}
+
 impl PartEntry {
     fn paths(&mut self) -> impl Iterator<Item = &mut PathBuf> {
         self.file.iter_mut().chain(&mut self.include_folders)

@@ -7,6 +7,7 @@ mod text;
 
 pub use error::{NotJson, ProjectError};
 pub use file::{
-    EXTENSION, FurtherEntry, PartEntry, PlacingEntry, Project, ProjectFile, ResultEntry, is_project,
+    EXTENSION, FurtherEntry, PartEntry, PlacingEntry, Project, ProjectFile, ResultEntry,
+    is_project, with_ending,
 };
 pub use open::{FoundPart, FoundProject, Located, ProjectRequest, open_project};

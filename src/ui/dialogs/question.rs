@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::app::PictureChoice;
 use crate::jobs::ProjectFile;
 use crate::pipeline::outputs::{Content, Output, Target, overwritten_inputs};
-use crate::pipeline::project::EXTENSION;
+use crate::pipeline::project::with_ending;
 use crate::role::Role;
 
 /// What is asked.
@@ -73,11 +73,11 @@ impl Question {
         !overwritten_inputs(&[target], inputs).is_empty()
     }
 
-    /// A name without an ending gets the usual one.
+    /// The path that is written: a name without an ending gets the usual one.
     pub(super) fn with_ending(&self, path: PathBuf) -> PathBuf {
         let ending = match self {
             Self::Save { kind, .. } => return kind.with_extension(path),
-            Self::SaveProject(_) => EXTENSION,
+            Self::SaveProject(_) => return with_ending(path),
             Self::Picture { .. } => "png",
             _ => return path,
         };

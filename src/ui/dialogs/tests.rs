@@ -60,6 +60,38 @@ fn a_file_that_is_read_is_told_in_the_field_and_the_path_stays() {
     assert!(note.starts_with("crash.k is one of the files"), "{note}");
 }
 
+#[test]
+fn a_project_is_asked_for_under_the_name_that_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let taken = folder.path().join("door.v2.shapematch");
+    std::fs::write(&taken, "old").unwrap();
+    let ctx = egui::Context::default();
+    let mut dialogs = Dialogs::default();
+    let question = || Question::SaveProject(PathBuf::new());
+    let typed = folder.path().join("door.v2");
+    dialogs.check(question(), typed, false, &ctx);
+    assert!(wait(&mut dialogs, &ctx).is_empty());
+    let asked = dialogs.overwrite.take().map(|(_, path, _)| path);
+    assert_eq!(asked, Some(taken.clone()));
+    // The ending is known in any case of its letters.
+    let same = taken.with_extension("ShapeMatch");
+    assert_eq!(question().with_ending(same.clone()), same);
+}
+
+#[test]
+fn a_question_that_is_not_asked_is_answered_as_a_closed_one() {
+    let ctx = egui::Context::default();
+    let mut dialogs = Dialogs {
+        is_asking: true,
+        ..Dialogs::default()
+    };
+    dialogs.ask_save_project(PathBuf::from("work.shapematch"), &ctx);
+    let [command] = dialogs.answers(&ctx).try_into().unwrap();
+    let is_meant = matches!(command, Command::Project(ProjectCommand::NotWritten));
+    assert!(is_meant, "{command:?}");
+    assert!(dialogs.answers(&ctx).is_empty(), "once");
+}
+
 /// Waits for the answer of a thread and gives the commands that follow.
 fn wait(dialogs: &mut Dialogs, ctx: &egui::Context) -> Vec<Command> {
     for _ in 0..500 {
