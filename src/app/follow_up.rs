@@ -140,7 +140,7 @@ impl AppState {
             }
             FollowUp::SweepBegun => self.view.tab = BottomTab::Sweep,
             FollowUp::SweepEnded => {
-                if let Some(sweep) = self.matching.sweep() {
+                if let Some(sweep) = self.matching.sweep(&self.document) {
                     self.reduce.keep_sweep_levels(&self.document, sweep);
                 }
             }

@@ -143,7 +143,9 @@ impl AppState {
                     Vec::new()
                 });
             }
-            JobOutput::Compared(comparison) => topics.inspect.take_compared(comparison, stamp),
+            JobOutput::Compared(comparison) => {
+                topics.inspect.take_compared(work.document, comparison);
+            }
             JobOutput::Overlapped { of, overlap, limit } => {
                 topics.moving.take_overlap(of, overlap, limit, stamp);
             }
@@ -271,7 +273,7 @@ impl AppState {
 
     pub(super) fn take_live(&mut self, live: Live) {
         self.jobs.take_live(&live);
-        self.matching.take_sweep_rows();
+        self.matching.take_sweep_rows(&self.document);
         let is_match = self
             .jobs
             .running()

@@ -26,6 +26,7 @@ mod log;
 mod mapping;
 mod matching;
 mod moving;
+mod of_parts;
 mod pairs;
 mod palette;
 mod parts;
@@ -47,7 +48,7 @@ pub use export::{
 };
 pub use history::{GestureId, History, HistoryCommand, HistoryRow, StepKind};
 pub use inspect::{
-    Coloring, Compared, Freshness, InspectCommand, InspectState, Label, LookedAt, SectionView,
+    Coloring, Freshness, InspectCommand, InspectState, Label, LookedAt, SectionView,
 };
 pub use job_board::{JobBoard, RunningJob};
 pub use log::{
@@ -59,14 +60,13 @@ pub use mapping::{
     MapResult, Mapping, MappingState, Placing, ProbeReport, Quantity, ShownFile, StampedRow,
     StampedState, UnmappedElement, file_names,
 };
-pub use matching::{
-    Cause, LiveStarts, MatchCommand, MatchState, Preview, PreviewCommand, Previews, Starts,
-};
+pub use matching::{Cause, MatchCommand, MatchState, Preview, PreviewCommand, Previews};
 pub use moving::{
     Axis, AxisFrame, Constraint, ModalInput, ModalMove, ModalOutcome, MotionKind, MoveCommand,
     MoveFrame, MoveTool, MovingState, PoseOverlap, gizmo, rotation_about, short_number,
     translation_along, turns_deg, with_turns_deg,
 };
+pub use of_parts::OfParts;
 pub use pairs::{
     PairCommand, PairTool, PairVerdict, PairsState, PickKind, PickedPoint, PointPair, PointPairs,
 };

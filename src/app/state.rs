@@ -134,7 +134,7 @@ impl AppState {
         let beside = self.free_window();
         let starts = self.matching.starts_of(&self.document);
         let starts = starts.filter(|_| self.previews.start.is_some());
-        let starts = starts.map_or(&[][..], |starts| starts.poses.as_slice());
+        let starts = starts.map_or(&[][..], |starts| starts.as_slice());
         let scene = Scene {
             is_beside: beside.is_some_and(FreeWindow::is_picture),
             pose: self.shown_pose(),

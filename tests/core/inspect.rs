@@ -27,12 +27,12 @@ fn nudge(window: &mut Window, distance: f64) {
 
 /// The last comparison as if it had taken so long.
 fn as_if_it_took(window: &mut Window, took: Duration) {
-    let compared = window.state.inspect.compared.as_mut().unwrap();
     let comparison = Comparison {
         took,
-        ..Comparison::clone(&compared.comparison)
+        ..window.state.comparison().unwrap().clone()
     };
-    compared.comparison = Arc::new(comparison).into();
+    let compared = OfParts::new(&window.state.document, Arc::new(comparison).into());
+    window.state.inspect.compared = Some(compared);
 }
 
 #[test]

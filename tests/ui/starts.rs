@@ -54,11 +54,7 @@ fn one_camera_shows_every_first_pose_whole() {
     finish(&mut window);
     window.run_steps(20);
     let fitted = camera(&window);
-    let n_starts = window
-        .state()
-        .state()
-        .current_starts()
-        .map(|starts| starts.poses.len());
+    let n_starts = window.state().state().current_starts().map(<[_]>::len);
     for start in 0..n_starts.expect("first poses") {
         assert_eq!(camera(&window), fitted, "start {start}");
         let area = window

@@ -82,7 +82,7 @@ pub(super) fn has_valid_mapping(state: &AppState) -> Result<(), Reason> {
 }
 
 pub(super) fn has_starts(state: &AppState) -> Result<(), Reason> {
-    let n_starts = state.current_starts().map_or(0, |s| s.poses.len());
+    let n_starts = state.current_starts().map_or(0, <[_]>::len);
     require(n_starts > 0, "Align the surface normals first.")?;
     state.jobs.is_unlocked()
 }

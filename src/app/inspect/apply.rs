@@ -3,10 +3,10 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::{Compared, InspectCommand, InspectState, Label, LookedAt};
-use crate::app::Effect;
+use super::{InspectCommand, InspectState, Label, LookedAt};
 use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
+use crate::app::{Document, Effect, OfParts};
 use crate::geometry::{Point3, Similarity};
 use crate::jobs::{CompareInput, JobKey, JobKind, Stamp};
 use crate::pipeline::inspect::Comparison;
@@ -99,11 +99,12 @@ impl InspectState {
         self.gave_up_comparing = Some(stamp);
     }
 
-    pub(in crate::app) fn take_compared(&mut self, comparison: Arc<Comparison>, stamp: Stamp) {
-        self.compared = Some(Compared {
-            parts: stamp.parts,
-            comparison: comparison.into(),
-        });
+    pub(in crate::app) fn take_compared(
+        &mut self,
+        document: &Document,
+        comparison: Arc<Comparison>,
+    ) {
+        self.compared = Some(OfParts::new(document, comparison.into()));
     }
 }
 

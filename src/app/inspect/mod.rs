@@ -9,12 +9,12 @@ pub use coloring::Coloring;
 pub use command::InspectCommand;
 pub use section::SectionView;
 
-use super::{AppState, BottomTab, ColorBy, Document, Shared};
+use super::{AppState, BottomTab, ColorBy, Document, OfParts, Shared};
 use crate::assess::deviation::{DeviationStats, OneWay};
 use crate::geometry::{Point3, Similarity};
 use crate::jobs::{JobKey, Stamp};
 use crate::pipeline::inspect::Comparison;
-use crate::role::{PerRole, Role};
+use crate::role::Role;
 
 /// A value pinned to a node. Part of the document, so that undo knows it.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,15 +46,6 @@ pub enum Freshness {
     OutOfDate,
 }
 
-/// A comparison with the parts it was made of.
-#[derive(Debug, Clone)]
-pub struct Compared {
-    /// Revisions of the parts.
-    pub parts: PerRole<u64>,
-    /// Numbers of the comparison.
-    pub comparison: Shared<Comparison>,
-}
-
 /// A place that was looked at.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LookedAt {
@@ -72,7 +63,7 @@ pub struct InspectState {
     /// The section plane.
     pub section: SectionView,
     /// The last comparison of both parts, up to date or not.
-    pub compared: Option<Compared>,
+    pub compared: Option<OfParts<Shared<Comparison>>>,
     /// The place that was looked at last; marked until something else is.
     place: Option<LookedAt>,
     /// The state at which a comparison failed or was cancelled.
@@ -82,9 +73,8 @@ pub struct InspectState {
 impl InspectState {
     /// The last comparison of the parts that are loaded, up to date or not.
     fn comparison(&self, document: &Document) -> Option<&Comparison> {
-        let parts = document.stamp().parts;
-        let compared = self.compared.as_ref().filter(|c| c.parts == parts)?;
-        Some(&compared.comparison)
+        let comparison = self.compared.as_ref()?.current(document)?;
+        Some(comparison)
     }
 
     /// True if the comparison is that of this pose and the levels in use.

@@ -74,9 +74,7 @@ impl AppState {
     }
 
     fn failure(&self) -> Option<&Failure> {
-        let parts = self.document.stamp().parts;
-        let last = self.matching.failure.as_ref();
-        last.filter(|failure| failure.parts == parts)
+        self.matching.failure.as_ref()?.current(&self.document)
     }
 
     /// What to try after a match that gave no pose.

@@ -3,11 +3,10 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::MatchState;
 use super::result::show_alternative;
-use super::{MatchState, Starts};
-use crate::app::LogStep;
-use crate::app::facts;
 use crate::app::work::Work;
+use crate::app::{LogStep, OfParts, facts};
 use crate::registration::starts::Start;
 
 impl MatchState {
@@ -17,18 +16,15 @@ impl MatchState {
         if work.is_unlocked().is_err() {
             return;
         }
-        let n_starts = self.starts.as_ref().map_or(0, |starts| starts.poses.len());
+        let n_starts = self.starts_of(work.document).map_or(0, |s| s.len());
         work.previews.start = index.filter(|i| *i < n_starts);
     }
 
     pub(super) fn step_start(&mut self, work: &mut Work<'_>, direction: i32) {
-        let Some(starts) = self
-            .starts_of(work.document)
-            .filter(|s| !s.poses.is_empty())
-        else {
+        let Some(starts) = self.starts_of(work.document).filter(|s| !s.is_empty()) else {
             return;
         };
-        let n_starts = starts.poses.len();
+        let n_starts = starts.len();
         let next = match work.previews.start {
             None if direction > 0 => 0,
             None => n_starts - 1,
@@ -39,9 +35,7 @@ impl MatchState {
     }
 
     pub(super) fn use_start(&mut self, work: &mut Work<'_>, index: usize) {
-        let start = self
-            .starts_of(work.document)
-            .and_then(|s| s.poses.get(index));
+        let start = self.starts_of(work.document).and_then(|s| s.get(index));
         let Some(pose) = start.map(|s| s.target_from_source) else {
             return;
         };
@@ -64,7 +58,7 @@ impl MatchState {
             .document
             .result
             .as_ref()
-            .filter(|_| self.live_starts.is_empty());
+            .filter(|_| !self.has_live_starts(work.document));
         let known = outcome.and_then(|result| {
             let outcome = &result.run.outcome;
             let alternative = outcome.alternatives.iter().position(|a| a.start == index);
@@ -89,10 +83,7 @@ impl MatchState {
         let n_poses = poses.len();
         let text = facts::counted(n_poses, "start pose");
         work.log_step(LogStep::Align, None, text, Some(took));
-        self.starts = Some(Starts {
-            parts: work.document.stamp().parts,
-            poses: poses.into(),
-        });
+        self.starts = Some(OfParts::new(work.document, poses.into()));
         work.previews.start = (n_poses > 0).then_some(0);
     }
 }

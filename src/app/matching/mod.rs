@@ -14,20 +14,19 @@ mod sweep;
 pub use command::{MatchCommand, PreviewCommand};
 pub use explain::Cause;
 pub use preview::{Preview, Previews};
-pub use starts::{LiveStarts, Starts};
 
+use self::starts::LiveStarts;
 use super::work::Work;
-use super::{AppState, Effect, Reason, Shared};
+use super::{AppState, Document, Effect, OfParts, Reason, Shared};
 use crate::jobs::{Live, Measurement, Stamp, SweepRows};
 use crate::pipeline::sweep::Sweep;
 use crate::registration::Method;
-use crate::role::PerRole;
+use crate::registration::starts::Start;
 
 /// A match that gave no pose.
 #[derive(Debug, Clone)]
 struct Failure {
-    /// The parts it was run on, and how.
-    parts: PerRole<u64>,
+    /// How it was run.
     method: Method,
     /// What it said.
     message: String,
@@ -37,11 +36,11 @@ struct Failure {
 #[derive(Debug, Clone, Default)]
 pub struct MatchState {
     /// The first poses of the last alignment.
-    starts: Option<Starts>,
+    starts: Option<OfParts<Shared<Vec<Start>>>>,
     /// The starts of the running match, or of the last one if it gave no result.
-    live_starts: LiveStarts,
+    live_starts: OfParts<LiveStarts>,
     /// Why the last match gave no result.
-    failure: Option<Failure>,
+    failure: Option<OfParts<Failure>>,
     /// Distances and overlap with the state they were measured in.
     measurement: Option<(Stamp, Shared<Measurement>)>,
     /// The state and the shape tolerance of the alternative that was measured last without being asked for.
@@ -49,9 +48,9 @@ pub struct MatchState {
     /// The state and the shape tolerance of the verdict that was asked for last.
     judging_asked: Option<(Stamp, f64)>,
     /// The tables of the last sweep.
-    sweep: Option<Shared<Sweep>>,
+    sweep: Option<OfParts<Shared<Sweep>>>,
     /// The rows of the running sweep, and where the next ones come from.
-    sweep_so_far: Option<(Sweep, SweepRows)>,
+    sweep_so_far: Option<OfParts<(Sweep, SweepRows)>>,
 }
 
 impl AppState {
@@ -88,17 +87,17 @@ impl MatchState {
         Vec::new()
     }
 
-    /// The tables of the last sweep.
-    pub(super) fn sweep(&self) -> Option<&Shared<Sweep>> {
-        self.sweep.as_ref()
+    /// The tables of the last sweep of the parts that are loaded.
+    pub(super) fn sweep(&self, document: &Document) -> Option<&Shared<Sweep>> {
+        self.sweep.as_ref()?.current(document)
     }
 
     /// A project was opened: only its sweep is known.
-    pub(super) fn reopen(&mut self, sweep: Option<Shared<Sweep>>) {
-        self.sweep = sweep;
+    pub(super) fn reopen(&mut self, document: &Document, sweep: Option<Shared<Sweep>>) {
+        self.sweep = sweep.map(|sweep| OfParts::new(document, sweep));
         self.starts = None;
         self.measurement = None;
-        self.live_starts.clear();
+        self.live_starts = OfParts::default();
     }
 
     /// The running match reported its progress.
@@ -106,23 +105,25 @@ impl MatchState {
         if let Some(best) = &live.best {
             work.previews.live = Some(best.target_from_source);
         }
-        self.live_starts.add(live.starts, live.iterations);
+        if let Some(known) = self.live_starts.current_mut(work.document) {
+            known.add(live.starts, live.iterations);
+        }
     }
 
     /// A match ended without a result. Its starts are worth seeing only where nothing better is.
     pub(super) fn match_ended(&mut self, work: &mut Work<'_>) {
         work.previews.live = None;
         if work.document.result.is_some() {
-            self.live_starts.clear();
+            self.live_starts = OfParts::default();
         }
     }
 
     /// The last match gave no pose.
     pub(super) fn match_failed(&mut self, work: &Work<'_>, message: String) {
-        self.failure = Some(Failure {
-            parts: work.document.stamp().parts,
+        let failure = Failure {
             method: work.document.recipe.settings.method,
             message,
-        });
+        };
+        self.failure = Some(OfParts::new(work.document, failure));
     }
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::MatchState;
 use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
-use crate::app::{Effect, LogStep, MatchResult, NoticeLevel, facts};
+use crate::app::{Effect, LogStep, MatchResult, NoticeLevel, OfParts, facts};
 use crate::geometry::Similarity;
 use crate::jobs::Stamp;
 use crate::pipeline::match_parts::MatchRun;
@@ -30,7 +30,7 @@ impl MatchState {
             work.log_step(step, None, text, Some(took));
         }
         work.previews.live = None;
-        self.live_starts.clear();
+        self.live_starts = OfParts::default();
         let pose = run.crash_from_stamped;
         let before = work.document.stamped_center();
         take_pose_as_result(work, "Match".to_owned(), pose, |stamp| MatchResult {

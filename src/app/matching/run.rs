@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::MatchState;
+use super::starts::LiveStarts;
 use crate::app::work::Work;
-use crate::app::{Effect, Part};
+use crate::app::{Effect, OfParts, Part};
 use crate::jobs::{JobKind, MatchInput};
 use crate::pipeline::match_parts::{MatchRecipe, ReducedPair};
 use crate::registration::StartMethod;
@@ -54,7 +55,7 @@ impl MatchState {
     ) -> Vec<Effect> {
         let effects = start_with_input(work, recipe, kind);
         if !effects.is_empty() {
-            self.live_starts.clear();
+            self.live_starts = OfParts::new(work.document, LiveStarts::default());
             self.failure = None;
             work.previews.chosen_start = None;
             work.previews.live = None;

@@ -7,20 +7,11 @@ use crate::geometry::{Point3, Similarity};
 use crate::jobs::{JobKey, LiveIteration};
 use crate::registration::starts::Start;
 use crate::registration::{Extent, StartRecord};
-use crate::role::{PerRole, Role};
-
-/// The first poses of the last alignment.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Starts {
-    /// The parts they were made for.
-    pub parts: PerRole<u64>,
-    /// The poses, in the order they are stepped through.
-    pub poses: Shared<Vec<Start>>,
-}
+use crate::role::Role;
 
 /// The starts of the running match so far, or of the last one if it was cancelled or failed.
 #[derive(Debug, Clone, Default)]
-pub struct LiveStarts {
+pub(super) struct LiveStarts {
     starts: Vec<StartRecord>,
 }
 
@@ -50,27 +41,22 @@ impl LiveStarts {
             }
         }
     }
-
-    /// True if no start has been reported.
-    pub fn is_empty(&self) -> bool {
-        self.starts.is_empty()
-    }
-
-    pub(super) fn clear(&mut self) {
-        self.starts.clear();
-    }
 }
 
 impl MatchState {
-    /// The first poses, if they belong to the parts that are loaded.
-    pub(in crate::app) fn starts_of(&self, document: &Document) -> Option<&Starts> {
-        let parts = document.stamp().parts;
-        self.starts.as_ref().filter(|s| s.parts == parts)
+    /// The first poses, in the order they are stepped through, if they belong to the parts that are loaded.
+    pub(in crate::app) fn starts_of(&self, document: &Document) -> Option<&Shared<Vec<Start>>> {
+        self.starts.as_ref()?.current(document)
+    }
+
+    fn live_starts(&self, document: &Document) -> &[StartRecord] {
+        let known = self.live_starts.current(document);
+        known.map_or(&[], |known| &known.starts)
     }
 
     fn match_starts<'a>(&'a self, document: &'a Document) -> &'a [StartRecord] {
-        if !self.live_starts.is_empty() {
-            return &self.live_starts.starts;
+        if self.has_live_starts(document) {
+            return self.live_starts(document);
         }
         let result = document.result.as_ref();
         result.map_or(&[], |result| &result.run.outcome.starts)
@@ -86,20 +72,21 @@ impl MatchState {
     }
 
     /// True if the running match, or the last one that gave no result, reported starts.
-    pub(in crate::app) fn has_live_starts(&self) -> bool {
-        !self.live_starts.is_empty()
+    pub(in crate::app) fn has_live_starts(&self, document: &Document) -> bool {
+        !self.live_starts(document).is_empty()
     }
 }
 
 impl AppState {
     /// The first poses, if they belong to the parts that are loaded.
-    pub fn current_starts(&self) -> Option<&Starts> {
-        self.matching.starts_of(&self.document)
+    pub fn current_starts(&self) -> Option<&[Start]> {
+        let starts = self.matching.starts_of(&self.document)?;
+        Some(starts)
     }
 
     /// The first pose that is shown instead of the real one.
     pub fn shown_start(&self) -> Option<&Start> {
-        self.current_starts()?.poses.get(self.previews.start?)
+        self.current_starts()?.get(self.previews.start?)
     }
 
     /// The starts of the running match, of the result, or of the last run that gave none, in the
@@ -129,7 +116,7 @@ impl AppState {
 
     /// Starts of the running match that have ended, and those that began.
     pub fn n_ended_starts(&self) -> [usize; 2] {
-        let starts = &self.matching.live_starts.starts;
+        let starts = self.matching.live_starts(&self.document);
         let n_ended = starts.iter().filter(|start| start.outcome.is_some());
         [n_ended.count(), starts.len()]
     }
@@ -173,7 +160,7 @@ impl AppState {
             let latest = self.jobs.running().and_then(|job| job.latest);
             return latest.map(|iteration| iteration.start);
         }
-        if !self.matching.has_live_starts() {
+        if !self.matching.has_live_starts(&self.document) {
             let result = self.document.result.as_ref()?;
             return Some(result.run.outcome.winner);
         }

@@ -7,7 +7,7 @@ use super::MatchState;
 use super::run::start_with_input;
 use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
-use crate::app::{AppState, Effect, LogStep, NoticeLevel};
+use crate::app::{AppState, Document, Effect, LogStep, NoticeLevel, OfParts};
 use crate::jobs::{JobKey, JobKind, SweepInput, SweepRows};
 use crate::pipeline::sweep::{Sweep, SweepSettings};
 use crate::role::Role;
@@ -15,10 +15,12 @@ use crate::role::Role;
 impl AppState {
     /// The tables of the running sweep as far as they are measured, or those of the last one.
     pub fn shown_sweep(&self) -> Option<&Sweep> {
-        let known = &self.matching;
-        let so_far = known.sweep_so_far.as_ref();
+        let so_far = self.matching.sweep_so_far.as_ref();
         let running = so_far.filter(|_| self.jobs.is_active(JobKey::Sweep));
-        running.map(|(sweep, _)| sweep).or(known.sweep.as_deref())
+        match running.and_then(|so_far| so_far.current(&self.document)) {
+            Some((sweep, _)) => Some(sweep),
+            None => self.matching.sweep(&self.document).map(|sweep| &**sweep),
+        }
     }
 }
 
@@ -54,15 +56,16 @@ impl MatchState {
                 n_triangles,
                 ..Sweep::default()
             };
-            self.sweep_so_far = Some((begun, told));
+            self.sweep_so_far = Some(OfParts::new(work.document, (begun, told)));
             work.follow(FollowUp::SweepBegun);
         }
         effects
     }
 
     /// Takes over the rows that the running sweep has measured since the last look.
-    pub(in crate::app) fn take_sweep_rows(&mut self) {
-        if let Some((sweep, rows)) = &mut self.sweep_so_far {
+    pub(in crate::app) fn take_sweep_rows(&mut self, document: &Document) {
+        let so_far = self.sweep_so_far.as_mut();
+        if let Some((sweep, rows)) = so_far.and_then(|so_far| so_far.current_mut(document)) {
             for row in rows.take() {
                 sweep.push(row);
             }
@@ -75,7 +78,7 @@ impl MatchState {
         table: Arc<Sweep>,
         took: Duration,
     ) {
-        self.sweep = Some(table.into());
+        self.sweep = Some(OfParts::new(work.document, table.into()));
         self.sweep_so_far = None;
         work.follow(FollowUp::SweepEnded);
         work.log_at(

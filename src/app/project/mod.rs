@@ -102,7 +102,10 @@ impl AppState {
                 alternative: result.alternative,
                 run: result.run.clone_inner(),
             }),
-            sweep: self.matching.sweep().map(|sweep| sweep.clone_inner()),
+            sweep: self
+                .matching
+                .sweep(&self.document)
+                .map(|sweep| sweep.clone_inner()),
             // A window that cannot be told leaves the work itself whole.
             window: serde_json::to_value(WindowEntry::of(self)).ok(),
             others: self.project.others.clone(),
@@ -131,7 +134,7 @@ impl AppState {
                 || !document.pairs.pairs.is_empty()
                 || document.recipe != MatchRecipe::default()
                 || document.mapping != Mapping::default()
-                || self.matching.sweep().is_some())
+                || self.matching.sweep(&self.document).is_some())
     }
 
     /// True if closing the window now would lose something.
@@ -143,7 +146,7 @@ impl AppState {
     pub fn needs_autosave(&self) -> bool {
         let is_moving = self.moving.is_moving();
         let is_known = |(kept, has_sweep): &(Document, bool)| {
-            *kept == self.document && *has_sweep == self.matching.sweep().is_some()
+            *kept == self.document && *has_sweep == self.matching.sweep(&self.document).is_some()
         };
         let is_wanted = self.settings.keeps_work && !is_moving && self.has_work();
         is_wanted && !self.project.autosaved.as_ref().is_some_and(is_known)
@@ -154,7 +157,7 @@ impl AppState {
         if !self.needs_autosave() {
             return Vec::new();
         }
-        let has_sweep = self.matching.sweep().is_some();
+        let has_sweep = self.matching.sweep(&self.document).is_some();
         self.project.autosaved = Some((self.document.clone(), has_sweep));
         vec![Effect::Autosave(Box::new(self.to_project(0)))]
     }

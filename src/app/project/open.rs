@@ -215,7 +215,7 @@ impl AppState {
     /// The window looks as it did; what is missing in the project stays.
     fn show_project(&mut self, project: &Project, window: Option<WindowEntry>) {
         let sweep = project.sweep.clone().map(|sweep| Arc::new(sweep).into());
-        self.matching.reopen(sweep);
+        self.matching.reopen(&self.document, sweep);
         self.parts.selected.clear();
         self.view.n_restored += 1;
         match window {

@@ -3,11 +3,11 @@
 use std::time::Duration;
 
 use super::ReduceState;
-use crate::app::{AppState, Document};
+use crate::app::{AppState, Document, OfParts};
 use crate::geometry::Similarity;
 use crate::pipeline::match_parts::MatchRun;
 use crate::pipeline::sweep::Sweep;
-use crate::role::{PerRole, Role};
+use crate::role::Role;
 
 /// The result of a match that searched on one level.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,20 +22,11 @@ pub struct LevelResult {
     pub took: Duration,
 }
 
-/// The results of the loaded pair, one for each level.
-#[derive(Debug, Clone, Default)]
-pub(super) struct LevelResults {
-    parts: PerRole<u64>,
-    rows: Vec<LevelResult>,
-}
-
 impl AppState {
     /// The result of the match at a level, if one was made with the loaded parts.
     pub fn level_result(&self, max_triangles: Option<usize>) -> Option<&LevelResult> {
-        let known = &self.reduce.level_results;
-        let is_current = known.parts == self.document.stamp().parts;
-        let rows = known.rows.iter().filter(|_| is_current);
-        rows.rev().find(|row| row.max_triangles == max_triangles)
+        let mut rows = self.reduce.level_results.current(&self.document)?.iter();
+        rows.rfind(|row| row.max_triangles == max_triangles)
     }
 
     /// How far the pose of a level puts the stamped part from where that of the full meshes does:
@@ -86,15 +77,10 @@ impl ReduceState {
     }
 
     fn keep_level(&mut self, document: &Document, result: LevelResult) {
-        let parts = document.stamp().parts;
-        if self.level_results.parts != parts {
-            self.level_results = LevelResults {
-                parts,
-                rows: Vec::new(),
-            };
-        }
-        let rows = &mut self.level_results.rows;
-        rows.retain(|row| row.max_triangles != result.max_triangles);
-        rows.push(result);
+        let known = self.level_results.current(document);
+        let others = known.into_iter().flatten();
+        let others = others.filter(|row| row.max_triangles != result.max_triangles);
+        let rows = others.copied().chain([result]).collect();
+        self.level_results = OfParts::new(document, rows);
     }
 }

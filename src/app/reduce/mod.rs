@@ -9,10 +9,11 @@ use std::time::Duration;
 pub use command::ReduceCommand;
 pub use level_result::LevelResult;
 
-use self::level_result::LevelResults;
 use super::follow_up::FollowUp;
 use super::work::Work;
-use super::{AppState, Document, Effect, GestureId, Part, Reason, Settings, ShownGeometry, facts};
+use super::{
+    AppState, Document, Effect, GestureId, OfParts, Part, Reason, Settings, ShownGeometry, facts,
+};
 use crate::app::LogStep;
 use crate::jobs::{JobKind, MeasureLevelInput, MeasuredLevel, Recording, ReduceInput};
 use crate::role::{PerRole, Role};
@@ -24,7 +25,8 @@ pub struct ReduceState {
     recordings: PerRole<Option<(u64, Arc<Recording>)>>,
     /// The one undo step of both parts that were last to be reduced together, with their ceiling.
     together: Option<(GestureId, usize)>,
-    level_results: LevelResults,
+    /// What the match gave with the loaded pair, one for each level.
+    level_results: OfParts<Vec<LevelResult>>,
 }
 
 impl AppState {

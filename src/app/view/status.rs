@@ -156,7 +156,7 @@ impl AppState {
         match tab {
             BottomTab::Timings => self.log.rows().iter().any(|row| row.took.is_some()),
             BottomTab::Starts | BottomTab::Convergence => {
-                self.matching.has_live_starts()
+                self.matching.has_live_starts(&self.document)
                     || self.document.result.is_some()
                     || self.jobs.is_active(JobKey::Match)
             }

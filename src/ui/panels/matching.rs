@@ -73,7 +73,7 @@ fn summary(state: &AppState) -> String {
 fn align_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let look = ("Align surface normals", Look::Plain, ROW + 4.0);
     wide_action(ui, state, Action::Align, look, commands);
-    let Some(starts) = state.current_starts().filter(|s| !s.poses.is_empty()) else {
+    let Some(starts) = state.current_starts().filter(|s| !s.is_empty()) else {
         return;
     };
     ui.horizontal(|ui| {
@@ -84,8 +84,8 @@ fn align_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 .widget_info(|| named_button("Previous start"));
         });
         let text = match state.previews.start {
-            Some(index) => format!("start {} of {}", index + 1, starts.poses.len()),
-            None => format!("{} starts", starts.poses.len()),
+            Some(index) => format!("start {} of {}", index + 1, starts.len()),
+            None => format!("{} starts", starts.len()),
         };
         let label = ui.add_sized(vec2(104.0, ROW), egui::Label::new(text));
         label.on_hover_text("The first poses are shown one by one; the real pose stays");

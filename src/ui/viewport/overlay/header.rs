@@ -339,7 +339,7 @@ fn preview(over: &Overlay<'_>) -> Option<String> {
         let starts = state.current_starts()?;
         let index = state.previews.start? + 1;
         let kind = start_kind_words(start.kind);
-        return Some(format!("start {index} of {} · {kind}", starts.poses.len()));
+        return Some(format!("start {index} of {} · {kind}", starts.len()));
     }
     preview_text(state)
 }
