@@ -77,7 +77,7 @@ impl AppState {
             Command::Inspect(command) => return topics.inspect.apply(work, command, &shown),
             Command::History(command) => {
                 if work.is_unlocked().is_ok() {
-                    work.apply_history(command);
+                    return work.apply_history(command);
                 }
             }
             Command::Notice(command) => match command {

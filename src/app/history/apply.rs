@@ -3,17 +3,19 @@
 use super::HistoryCommand;
 use crate::app::follow_up::{FollowUp, Places};
 use crate::app::work::Work;
-use crate::app::{Document, LogStep, StampedPose};
+use crate::app::{Document, Effect, LogStep, StampedPose};
+use crate::jobs::JobKey;
 use crate::role::Role;
 
 impl Work<'_> {
-    pub(in crate::app) fn apply_history(&mut self, command: HistoryCommand) {
+    pub(in crate::app) fn apply_history(&mut self, command: HistoryCommand) -> Vec<Effect> {
         match command {
             HistoryCommand::Undo => self.undo(),
             HistoryCommand::Redo => self.redo(),
             HistoryCommand::JumpTo(n_done) => self.jump_to(n_done),
-            HistoryCommand::ResetAll => self.reset_all(),
+            HistoryCommand::ResetAll => return self.reset_all(),
         }
+        Vec::new()
     }
 
     fn undo(&mut self) {
@@ -51,7 +53,10 @@ impl Work<'_> {
         self.follow(FollowUp::SteppedInHistory(before));
     }
 
-    fn reset_all(&mut self) {
+    /// A reduction that is under way would reduce a part again.
+    fn reset_all(&mut self) -> Vec<Effect> {
+        let reductions = Role::ALL.into_iter().map(JobKey::Reduce);
+        let effects = reductions.flat_map(|key| self.cancel(key)).collect();
         let revision = self.history.next_revision();
         self.previews.drop_all();
         self.commit("Reset to initial state", |document| {
@@ -72,5 +77,6 @@ impl Work<'_> {
                 };
             }
         });
+        effects
     }
 }

@@ -88,6 +88,9 @@ impl MovingState {
         match command {
             MoveCommand::ToggleGizmo => self.has_gizmo = !self.has_gizmo,
             MoveCommand::SetAxes(axes) => self.axes = axes,
+            MoveCommand::EndDrag => self.end_drag(work),
+            // The part is let go, and stays where the job that holds it has it.
+            MoveCommand::AbandonDrag(_) if work.can_move().is_err() => self.end_drag(work),
             _ if work.can_move().is_err() => {}
             _ => self.move_part(work, command, frame),
         }
@@ -102,13 +105,12 @@ impl MovingState {
 
     fn move_part(&mut self, work: &mut Work<'_>, command: MoveCommand, now: Option<MoveFrame>) {
         match command {
-            MoveCommand::ToggleGizmo | MoveCommand::SetAxes(_) => {}
+            MoveCommand::ToggleGizmo | MoveCommand::SetAxes(_) | MoveCommand::EndDrag => {}
             MoveCommand::Drag {
                 gesture,
                 delta,
                 name,
             } => self.drag(work, gesture, &delta, name),
-            MoveCommand::EndDrag => self.end_drag(work),
             MoveCommand::AbandonDrag(gesture) => self.abandon(work, gesture),
             MoveCommand::Translate {
                 axis,

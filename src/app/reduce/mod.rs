@@ -15,7 +15,7 @@ use super::{
     AppState, Document, Effect, GestureId, OfParts, Part, Reason, Settings, ShownGeometry, facts,
 };
 use crate::app::LogStep;
-use crate::jobs::{JobKind, MeasureLevelInput, MeasuredLevel, Recording, ReduceInput};
+use crate::jobs::{JobKey, JobKind, MeasureLevelInput, MeasuredLevel, Recording, ReduceInput};
 use crate::role::{PerRole, Role};
 
 /// What is remembered of reductions.
@@ -100,10 +100,7 @@ impl ReduceState {
                 roles,
                 max_triangles,
             } => self.reduce_roles(work, roles, max_triangles),
-            ReduceCommand::Full(roles) => {
-                self.reduce_to_full(work, roles);
-                Vec::new()
-            }
+            ReduceCommand::Full(roles) => reduce_to_full(work, roles),
             ReduceCommand::Step(direction) => self.step_level(work, direction),
         }
     }
@@ -148,25 +145,11 @@ impl ReduceState {
         Some(work.start(JobKind::Reduce(input)))
     }
 
-    fn reduce_to_full(&mut self, work: &mut Work<'_>, roles: PerRole<bool>) {
-        work.commit("Back to the full mesh", |document| {
-            for role in Role::ALL.into_iter().filter(|role| *roles.get(*role)) {
-                if let Some(part) = document.parts.get_mut(role) {
-                    part.level = None;
-                    part.wanted_level = None;
-                }
-            }
-        });
-    }
-
     fn step_level(&mut self, work: &mut Work<'_>, direction: i32) -> Vec<Effect> {
         let roles = work.settings.reduce_roles;
         match work.document.next_level(work.settings, direction) {
             Some(Some(max_triangles)) => self.reduce_roles(work, roles, max_triangles),
-            Some(None) => {
-                self.reduce_to_full(work, roles);
-                Vec::new()
-            }
+            Some(None) => reduce_to_full(work, roles),
             None => Vec::new(),
         }
     }
@@ -229,6 +212,24 @@ impl ReduceState {
             level,
         }))]
     }
+}
+
+/// A reduction that is under way would reduce the part again.
+fn reduce_to_full(work: &mut Work<'_>, roles: PerRole<bool>) -> Vec<Effect> {
+    let chosen = Role::ALL.into_iter().filter(|role| *roles.get(*role));
+    let effects = chosen
+        .clone()
+        .flat_map(|role| work.cancel(JobKey::Reduce(role)))
+        .collect();
+    work.commit("Back to the full mesh", |document| {
+        for role in chosen {
+            if let Some(part) = document.parts.get_mut(role) {
+                part.level = None;
+                part.wanted_level = None;
+            }
+        }
+    });
+    effects
 }
 
 /// The distances of a level were measured.
