@@ -265,7 +265,8 @@ impl AppState {
                 let (mut work, topics) = self.split();
                 topics.matching.match_ended(&mut work);
             }
-            JobKey::Load(_) => self.parts.load_ended(),
+            // One that a newer load took the place of is none of those that are waited for.
+            JobKey::Load(_) if !self.jobs.is_active(key) => self.parts.load_ended(),
             JobKey::Compare => self.inspect.give_up_comparing(self.document.stamp()),
             _ => {}
         }

@@ -1,12 +1,50 @@
 //! What the choice, look and visibility of parts change.
 
+use std::collections::BTreeSet;
+
 use super::{PartCommand, PartRef, PartsState};
 use crate::app::work::Work;
-use crate::app::{Effect, Part};
+use crate::app::{AppState, Document, Effect, JobBoard, Part};
 use crate::formats::Selection;
+use crate::jobs::JobKey;
+use crate::pipeline::load::LoadSettings;
 use crate::role::Role;
 
+impl AppState {
+    /// True if a part of a deck is matched, or will be as soon as what was chosen is made.
+    pub fn is_part_used(&self, part: PartRef) -> bool {
+        self.parts.is_used(&self.document, &self.jobs, part)
+    }
+}
+
 impl PartsState {
+    /// What a part is being made again with.
+    pub(super) fn pending(
+        &self,
+        document: &Document,
+        jobs: &JobBoard,
+        role: Role,
+    ) -> Option<&LoadSettings> {
+        let (of, settings) = self.pending.get(role).as_ref()?;
+        let is_current = document.part(role)?.revision == *of;
+        (is_current && jobs.is_active(JobKey::Reselect(role))).then_some(settings)
+    }
+
+    /// [`AppState::is_part_used`].
+    fn is_used(&self, document: &Document, jobs: &JobBoard, part: PartRef) -> bool {
+        let Some(of) = document.part(part.role) else {
+            return false;
+        };
+        let pending = self.pending(document, jobs, part.role);
+        let selection = pending.map(|settings| &settings.selection);
+        match selection.filter(|selection| **selection != of.loaded.settings.selection) {
+            Some(Selection::Parts(ids)) => ids.contains(&part.id),
+            Some(Selection::All) => true,
+            Some(Selection::Sheet) => !of.facts.tools.contains(&part.id),
+            _ => of.is_used(part.id),
+        }
+    }
+
     pub(in crate::app) fn apply_part(
         &mut self,
         work: &mut Work<'_>,
@@ -35,7 +73,9 @@ impl PartsState {
                 return self.use_parts(work, part.role, Selection::Parts(vec![part.id]));
             }
             PartCommand::UseAll(role) => {
-                self.choice_made_for = Some(work.document.stamp().parts);
+                if role == Role::Crash {
+                    self.all_meant_for.push(work.document.stamp().parts);
+                }
                 return self.use_parts(work, role, Selection::All);
             }
         }
@@ -162,7 +202,11 @@ impl PartsState {
         let Some(loaded) = work.document.part(part.role) else {
             return Vec::new();
         };
-        let mut used = loaded.facts.used.clone();
+        let ids = loaded.facts.parts.iter().map(|row| row.id);
+        let role = part.role;
+        let is_used_now =
+            |id: &u64| self.is_used(work.document, work.jobs, PartRef { role, id: *id });
+        let mut used: BTreeSet<u64> = ids.filter(is_used_now).collect();
         let has_changed = if is_used {
             used.insert(part.id)
         } else {

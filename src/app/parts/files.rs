@@ -288,7 +288,8 @@ impl PartsState {
         }
     }
 
-    /// Makes the surface of a part again from the model in memory.
+    /// Makes the surface of a part again from the model in memory, with what is changed beside what was chosen
+    /// before and is not made yet.
     pub(super) fn reselect(
         &mut self,
         work: &mut Work<'_>,
@@ -298,13 +299,23 @@ impl PartsState {
         let Some(part) = work.document.part(role) else {
             return Vec::new();
         };
-        let loaded = part.loaded.to_arc();
-        let mut settings = loaded.settings.clone();
+        let (revision, loaded) = (part.revision, part.loaded.to_arc());
+        let pending = self.pending(work.document, work.jobs, role);
+        let before = pending.unwrap_or(&loaded.settings);
+        let mut settings = before.clone();
         change(&mut settings);
-        if settings == loaded.settings {
+        if settings == *before {
             return Vec::new();
         }
         let mut effects = work.cancel(JobKey::Reselect(role));
+        let is_as_loaded = LoadSettings {
+            units: loaded.settings.units,
+            ..settings.clone()
+        } == loaded.settings;
+        *self.pending.get_mut(role) = (!is_as_loaded).then(|| (revision, settings.clone()));
+        if is_as_loaded {
+            return effects;
+        }
         effects.push(work.start(JobKind::Reselect {
             role,
             part: loaded,
@@ -472,11 +483,19 @@ impl PartsState {
             facts,
             took,
         } = new;
+        // Another unit may have been set meanwhile.
+        let old = work.document.part(role);
+        let units = old.map(|old| old.loaded.settings.units);
+        let part = match units {
+            Some(units) if units != part.settings.units => Arc::new(part.with_units(units)),
+            _ => part,
+        };
         let line = facts::load_line(&part, &facts);
         let tools = part.tools_line();
         let revision = work.history.next_revision();
         let name = self.reselect_name(work, role, &part, &facts);
         let gesture = self.unit_gesture.take();
+        let are_all_meant = self.all_meant_for.contains(&work.document.stamp().parts);
         work.previews.drop_all();
         work.commit_in(name, gesture, |document| {
             if let Some(old) = document.parts.get_mut(role) {
@@ -486,6 +505,9 @@ impl PartsState {
                 old.level = None;
             }
         });
+        if are_all_meant {
+            self.all_meant_for.push(work.document.stamp().parts);
+        }
         work.log_step(LogStep::Select, Some(role), line, Some(took));
         if let Some(line) = tools {
             work.log_at(NoticeLevel::Note, LogStep::Select, Some(role), line, None);

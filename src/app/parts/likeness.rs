@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::{PartRef, PartsState};
-use crate::app::{AppState, Document};
+use crate::app::{AppState, Document, OfParts};
+use crate::formats::Selection;
 use crate::pipeline::likeness::{Moments, Signature, more_alike};
 use crate::role::{PerRole, Role};
 
@@ -56,20 +57,23 @@ pub struct MoreAlike {
     pub part: PartRef,
     /// Crash parts that are matched now.
     pub n_used: usize,
-    parts: PerRole<u64>,
 }
 
 impl AppState {
     /// The part of the crash model that should be matched alone, where all of several are.
     pub fn more_alike(&self) -> Option<&MoreAlike> {
-        let parts = self.document.stamp().parts;
-        self.parts.more_alike.as_ref().filter(|l| l.parts == parts)
+        self.parts.more_alike.as_ref()?.current(&self.document)
     }
 
     /// [`AppState::more_alike`] until the user said which parts are matched, or a match was made.
     pub fn part_question(&self) -> Option<&MoreAlike> {
         let parts = self.document.stamp().parts;
-        let is_answered = self.parts.choice_made_for == Some(parts);
+        let crash = self.document.part(Role::Crash);
+        let is_chosen = crash.is_some_and(|crash| {
+            let selection = &crash.loaded.settings.selection;
+            !matches!(selection, Selection::All | Selection::Sheet)
+        });
+        let is_answered = is_chosen || self.parts.all_meant_for.contains(&parts);
         let result = self.document.result.as_ref();
         let is_matched = result.is_some_and(|result| result.stamp.parts == parts);
         self.more_alike().filter(|_| !is_answered && !is_matched)
@@ -98,7 +102,8 @@ impl PartsState {
         let of_car = is_car.then_some(LikeWhat::Used(Role::Stamped));
         let to = self.likeness.as_ref().map(|l| l.to).or(of_car);
         self.order_like(document, to);
-        self.more_alike = document.more_alike();
+        let more_alike = document.more_alike();
+        self.more_alike = more_alike.map(|more| OfParts::new(document, more));
     }
 }
 
@@ -122,7 +127,6 @@ impl Document {
                 id,
             },
             n_used,
-            parts: self.stamp().parts,
         })
     }
 

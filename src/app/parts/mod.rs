@@ -20,7 +20,8 @@ pub use unit_memory::UnitMemory;
 pub use units::UnitHint;
 pub(super) use units::length_factor_of;
 
-use super::{Document, GestureId};
+use super::{Document, GestureId, OfParts};
+use crate::pipeline::load::LoadSettings;
 use crate::role::{PerRole, Role};
 
 /// A part of a deck.
@@ -42,9 +43,11 @@ pub struct PartsState {
     /// What the part list is sorted by, if not the order of the files.
     likeness: Option<Likeness>,
     /// The part that should be matched alone, if there is one.
-    more_alike: Option<MoreAlike>,
-    /// The parts for which the user said which of a deck are matched.
-    choice_made_for: Option<PerRole<u64>>,
+    more_alike: Option<OfParts<MoreAlike>>,
+    /// The parts for which the user said that all of the crash model are meant.
+    all_meant_for: Vec<PerRole<u64>>,
+    /// What each part is being made again with, by the part's number.
+    pending: PerRole<Option<(u64, LoadSettings)>>,
     guess: Guess,
     /// The parts for which the hint about units was answered.
     unit_hint_dismissed_for: Option<PerRole<u64>>,

@@ -48,7 +48,8 @@ impl PartsState {
             effects.push(Effect::SaveSettings);
         }
         let follows = self.settle_length_factor(work);
-        self.unit_gesture = Some(gesture).filter(|_| !follows.is_empty());
+        let is_made_again = |effect: &Effect| matches!(effect, Effect::StartJob(..));
+        self.unit_gesture = Some(gesture).filter(|_| follows.iter().any(is_made_again));
         effects.extend(follows);
         effects
     }

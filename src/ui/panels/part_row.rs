@@ -159,11 +159,11 @@ pub fn row_ui(
     }
     let tick = tick_ui(ui, cell(columns.tick), row, (state, &name));
     if tick.clicked() {
-        let is_used = row.part.is_used(at.id);
+        let is_used = state.is_part_used(at);
         commands.push(PartCommand::SetUsed(at, !is_used).into());
     }
     clicks(ui, &response, at, commands);
-    response.context_menu(|ui| menu_ui(ui, row, commands));
+    response.context_menu(|ui| menu_ui(ui, row, state, commands));
     let is_over = response.hovered() || eye.hovered() || tick.hovered();
     let response = response.on_hover_text(hover_text(row, state));
     (is_over, response)
@@ -216,10 +216,10 @@ fn clicks(ui: &Ui, response: &Response, at: PartRef, commands: &mut Vec<Command>
     }
 }
 
-fn menu_ui(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>) {
+fn menu_ui(ui: &mut Ui, row: &Row<'_>, state: &AppState, commands: &mut Vec<Command>) {
     let at = row.at();
     let is_visible = row.part.is_visible(at.id);
-    let is_used = row.part.is_used(at.id);
+    let is_used = state.is_part_used(at);
     let like = Some(LikeWhat::Part(at));
     let groups: [&[(&str, PartCommand)]; 3] = [
         &[
@@ -369,7 +369,7 @@ fn eye_ui(ui: &Ui, rect: Rect, row: &Row<'_>, name: &str) -> Response {
 /// The tick "use for match".
 fn tick_ui(ui: &Ui, rect: Rect, row: &Row<'_>, (state, name): (&AppState, &str)) -> Response {
     let palette = Palette::of(ui);
-    let is_used = row.part.is_used(row.summary.id);
+    let is_used = state.is_part_used(row.at());
     let is_free = state.jobs.locking_job().is_none();
     let sense = if is_free {
         Sense::click()
