@@ -12,10 +12,9 @@ use crate::text::{capital, parts_by_id};
 
 impl AppState {
     pub(super) fn take_job_event(&mut self, event: JobEvent) -> Vec<Effect> {
-        let was_cancelled = self
-            .jobs
-            .running()
-            .is_some_and(|job| job.id == event.id && job.is_cancelling);
+        let running = self.jobs.running().filter(|job| job.id == event.id);
+        let was_cancelled = running.is_some_and(|job| job.is_cancelling);
+        let was_stopped = running.is_some_and(|job| job.is_stopping);
         self.jobs.take_event(&event, self.log.now);
         match event.stage {
             JobStage::Started => Vec::new(),
@@ -33,10 +32,13 @@ impl AppState {
                 Vec::new()
             }
             JobStage::Finished(_) if !self.is_wanted(event.key, event.stamp) => {
-                let (step, role) = step_of(event.key);
-                let text = "discarded: inputs changed";
-                self.work().log_step(step, role, text, Some(event.elapsed));
-                self.previews.live = None;
+                self.discard(event.key, event.elapsed);
+                Vec::new()
+            }
+            JobStage::Finished(JobOutput::PartsFound(None)) if was_stopped => {
+                let text = "stopped before a crash part was found";
+                let took = Some(event.elapsed);
+                self.work().log_step(LogStep::Match, None, text, took);
                 Vec::new()
             }
             JobStage::Finished(output) => {
@@ -65,6 +67,19 @@ impl AppState {
                 now.parts == stamp.parts
             }
             JobKey::Measure | JobKey::Map | JobKey::CompareMapping => now == stamp,
+        }
+    }
+
+    /// A result of other inputs. Should these come back, it is asked for again.
+    fn discard(&mut self, key: JobKey, elapsed: Duration) {
+        let (step, role) = step_of(key);
+        let text = "discarded: inputs changed";
+        self.work().log_step(step, role, text, Some(elapsed));
+        self.previews.live = None;
+        match key {
+            JobKey::Verdict | JobKey::Measure => self.matching.forget_asked(),
+            JobKey::Overlap => self.moving.forget_asked(),
+            _ => {}
         }
     }
 
@@ -186,7 +201,8 @@ impl AppState {
         }
     }
 
-    /// The crash parts that the stamped part belongs to, or none: the match follows.
+    /// The crash parts that the stamped part belongs to with the match that found them; where there are none,
+    /// the match of all follows.
     fn take_found_parts(&mut self, found: Option<FoundCrash>, took: Duration) -> Vec<Effect> {
         let (mut work, topics) = self.split();
         let (level, text) = match &found {
@@ -208,19 +224,24 @@ impl AppState {
                 "the stamped part fits no crash part alone, so all are matched together".to_owned(),
             ),
         };
-        // The row of the selection has the time; told twice, it would be counted twice.
+        // The rows of selection and match have the time; told twice, it would be counted twice.
         let own = found.is_none().then_some(took);
         work.log_at(level, LogStep::Match, None, text, own);
-        if let Some(FoundCrash { part, facts, .. }) = found {
-            let new = NewPart {
-                role: Role::Crash,
-                part,
-                facts,
-                took,
-            };
-            topics.parts.take_reselected(&mut work, new);
-        }
-        topics.matching.run_match(&mut work)
+        let Some(FoundCrash {
+            part, facts, run, ..
+        }) = found
+        else {
+            return topics.matching.run_match(&mut work);
+        };
+        let find_time = Duration::try_from_secs_f64(run.times.find_ms / 1e3);
+        let new = NewPart {
+            role: Role::Crash,
+            part,
+            facts,
+            took: find_time.unwrap_or_default(),
+        };
+        topics.parts.take_reselected(&mut work, new);
+        topics.matching.take_matched(&mut work, run, took)
     }
 
     fn take_cancelled(&mut self, key: JobKey, elapsed: Duration) {

@@ -213,21 +213,19 @@ fn run_match(
         let max_triangles = asked.max_triangles;
         Some(ReducedPair::new(parts, max_triangles, monitor.monitor)?)
     };
-    let (mut run, find_ms) = match &found {
-        Some(of_parts) if is_as_found => {
-            let run = of_parts.found.run.clone();
-            let of_others = of_parts.took_ms - run.times.total_ms;
-            (run, of_others)
-        }
+    let run = match found {
+        Some(of_parts) if is_as_found => of_parts.run(),
         _ => {
             let (recipe, current) = (&asked.recipe, &asked.current);
-            let run = match_parts(parts, reduced.as_ref(), recipe, current, monitor)?;
-            (run, found.as_ref().map_or(0.0, |of_parts| of_parts.took_ms))
+            let mut run = match_parts(parts, reduced.as_ref(), recipe, current, monitor)?;
+            if let Some(of_parts) = found {
+                run.alike_parts = of_parts.rivals;
+                run.times.find_ms = of_parts.took_ms;
+                run.times.total_ms += of_parts.took_ms;
+            }
+            run
         }
     };
-    run.alike_parts = found.map_or_else(Vec::new, |of_parts| of_parts.rivals);
-    run.times.find_ms = find_ms;
-    run.times.total_ms += find_ms;
     let (number, n_poses) = (asked.pose_number, 1 + run.outcome.alternatives.len());
     match number {
         1 => Ok(run),

@@ -372,6 +372,8 @@ pub struct FoundCrash {
     pub facts: Arc<PartFacts>,
     /// Ids of others that fit about as well.
     pub rivals: Vec<u64>,
+    /// The match that found them.
+    pub run: Arc<MatchRun>,
 }
 
 /// What a finished job brings.

@@ -229,11 +229,13 @@ fn run_find_parts(input: &MatchInput, monitor: &Monitor) -> Result<JobOutput, Jo
     let Some(found) = found else {
         return Ok(JobOutput::PartsFound(None));
     };
+    let run = Arc::new(found.run());
     let part = found.found.part;
     Ok(JobOutput::PartsFound(Some(FoundCrash {
         facts: Arc::new(PartFacts::of(&part, monitor)?),
         part: Arc::new(part),
         rivals: found.rivals,
+        run,
     })))
 }
 

@@ -60,6 +60,17 @@ pub struct FoundParts {
     pub took_ms: f64,
 }
 
+impl FoundParts {
+    /// The match on them, with the time of the whole search and the ids of the other parts.
+    pub fn run(&self) -> MatchRun {
+        let mut run = self.found.run.clone();
+        run.alike_parts.clone_from(&self.rivals);
+        run.times.find_ms = self.took_ms - run.times.total_ms;
+        run.times.total_ms = self.took_ms;
+        run
+    }
+}
+
 /// The parts of the crash model that the stamped part belongs to; `None` if no match says so.
 ///
 /// The chosen parts of `parts.crash` are compared by area, spread and thickness, one by one and all

@@ -35,6 +35,11 @@ fn a_match_of_a_whole_model_tries_the_most_alike_parts_alone() {
     assert_eq!(used.iter().copied().collect::<Vec<_>>(), [asked.unwrap()]);
     let result = window.state.document.current_result().expect("a result");
     assert_eq!(result.run.assessment.verdict, Verdict::Good);
+    let times = &result.run.times;
+    assert!(
+        times.find_ms > 0.0,
+        "the match of the search is not made again"
+    );
     let rows = window.state.log.rows().iter();
     assert!(
         rows.into_iter()
@@ -44,6 +49,33 @@ fn a_match_of_a_whole_model_tries_the_most_alike_parts_alone() {
     window.act(Action::Undo);
     window.act(Action::Undo);
     assert_eq!(window.part(Role::Crash).facts.used.len(), n_parts);
+}
+
+/// Finds no crash part, as a search that is stopped at once.
+fn without_parts(kind: JobKind) -> Result<JobOutput, String> {
+    match kind {
+        JobKind::FindParts(_) => Ok(JobOutput::PartsFound(None)),
+        other => really(other),
+    }
+}
+
+#[test]
+fn no_match_begins_after_a_search_for_the_part_that_was_stopped() {
+    let folder = tempfile::tempdir().unwrap();
+    write_bracket(folder.path(), SampleVariant::WholeModel);
+    let mut window = Window::new();
+    window.runner = Some(without_parts);
+    for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
+        window.open(folder.path().join(name).to_str().unwrap(), role);
+    }
+    window.holds = true;
+    window.act(Action::MatchOrStop);
+    assert!(matches!(window.held[0].1, JobKind::FindParts(_)));
+    window.act(Action::MatchOrStop);
+    window.finish_held();
+    assert!(window.state.document.result.is_none());
+    let last = window.state.log.rows().last().unwrap();
+    assert!(last.text.contains("stopped before"), "{}", last.text);
 }
 
 #[test]

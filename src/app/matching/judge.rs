@@ -38,6 +38,12 @@ impl MatchState {
         vec![work.start(JobKind::Verdict(input))]
     }
 
+    /// A verdict or a measurement was discarded: what is shown may need it again.
+    pub(in crate::app) fn forget_asked(&mut self) {
+        self.judging_asked = None;
+        self.alternative_asked = None;
+    }
+
     /// The new verdict belongs to the step that changed the tolerance. One of a match or a tolerance that
     /// is no longer there is dropped.
     pub(in crate::app) fn take_judged(

@@ -55,6 +55,11 @@ impl MovingState {
         vec![work.start(JobKind::Overlap(input))]
     }
 
+    /// A number was discarded: what is shown may need it again.
+    pub(in crate::app) fn forget_asked(&mut self) {
+        self.overlap_asked = None;
+    }
+
     pub(in crate::app) fn take_overlap(
         &mut self,
         of: Role,
