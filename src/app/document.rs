@@ -191,6 +191,15 @@ impl Document {
             .collect()
     }
 
+    /// The files that something was found in while they were read, further stamped files too, with their part.
+    pub fn files_with_diagnostics(&self) -> impl Iterator<Item = (Role, &LoadedPart)> {
+        let crash = self.part(Role::Crash).map(|part| &part.loaded);
+        let crash = crash.into_iter().map(|part| (Role::Crash, &**part));
+        let stamped = self.all_stamped().map(|part| (Role::Stamped, &**part));
+        let has_any = |part: &LoadedPart| part.diagnostics().iter().any(|found| !found.is_empty());
+        crash.chain(stamped).filter(move |(_, part)| has_any(part))
+    }
+
     /// True if the stamped part was moved.
     pub fn has_pose(&self) -> bool {
         self.pose.crash_from_stamped != Similarity::identity()

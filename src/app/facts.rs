@@ -39,8 +39,8 @@ pub(super) fn diagnostics_line(part: &LoadedPart) -> Option<(NoticeLevel, String
         return None;
     }
     let counted = counted(usize::try_from(n).unwrap_or(usize::MAX), "diagnostic");
-    let all = [&part.model.diagnostics, &*part.surface_diagnostics];
-    let found = all
+    let found = part
+        .diagnostics()
         .into_iter()
         .filter_map(|diagnostics| diagnostics.most_severe());
     let most_severe = found.rev().max_by_key(|one| one.severity());

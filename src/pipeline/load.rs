@@ -241,14 +241,15 @@ impl LoadedPart {
             .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
     }
 
+    /// What the reader found in the file, and what was left out of the mesh.
+    pub fn diagnostics(&self) -> [&Diagnostics; 2] {
+        [&self.model.diagnostics, &*self.surface_diagnostics]
+    }
+
     /// What the reader could not understand or had to leave out, errors before warnings; notes are
     /// not among them. Of each kind only the first are kept.
     pub fn problems(&self) -> Vec<&Diagnostic> {
-        let kept = self
-            .model
-            .diagnostics
-            .iter()
-            .chain(self.surface_diagnostics.iter());
+        let kept = self.diagnostics().into_iter().flat_map(Diagnostics::iter);
         let mut problems: Vec<_> = kept.filter(|one| one.severity() > Severity::Note).collect();
         problems.sort_by_key(|one| std::cmp::Reverse(one.severity()));
         problems

@@ -455,6 +455,33 @@ fn a_deck_of_several_parts_asks_which_of_them_is_matched() {
 }
 
 #[test]
+fn diagnostics_of_every_file_are_listed() {
+    use shapematch::formats::{Diagnostic, DiagnosticKind};
+    let mut window = Window::with_both();
+    let has_tab = |window: &Window| window.state.has_content(BottomTab::Diagnostics);
+    let names = |window: &Window| -> Vec<String> {
+        let files = window.state.document.files_with_diagnostics();
+        files.map(|(_, part)| part.file_name()).collect()
+    };
+    assert!(!has_tab(&window) && names(&window).is_empty());
+    // What is left out of the mesh, in a further stamped file alone.
+    let mut loaded = window.part(Role::Stamped).loaded.clone_inner();
+    loaded.path = PathBuf::from("further.k");
+    let mut found = shapematch::formats::Diagnostics::default();
+    found.push(Diagnostic::new(DiagnosticKind::ZeroArea, "shell 7"));
+    loaded.surface_diagnostics = Arc::new(found);
+    let further = &mut window.state.document.mapping.further;
+    further.push(Further {
+        loaded: Arc::new(loaded).into(),
+        revision: 99,
+        pose: FurtherPose::default(),
+        placing: None,
+    });
+    assert!(has_tab(&window));
+    assert_eq!(names(&window), ["further.k"]);
+}
+
+#[test]
 fn a_result_is_a_toast_only_where_its_card_is_not_seen() {
     let mut window = Window::with_both_and_no_rivals();
     window.act(Action::MatchOrStop);

@@ -166,12 +166,7 @@ impl AppState {
             BottomTab::History => {
                 self.history.undo_name().is_some() || self.history.redo_name().is_some()
             }
-            BottomTab::Diagnostics => self
-                .document
-                .parts
-                .iter()
-                .filter_map(|(_, part)| part.as_ref())
-                .any(|part| part.loaded.model.diagnostics.total() > 0),
+            BottomTab::Diagnostics => self.document.files_with_diagnostics().next().is_some(),
             BottomTab::Log => true,
         }
     }

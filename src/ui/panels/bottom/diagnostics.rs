@@ -4,7 +4,6 @@ use egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 
 use crate::app::{AppState, Command, ExportCommand};
 use crate::formats::{Diagnostic, Diagnostics, Severity};
-use crate::role::Role;
 use crate::ui::theme::Palette;
 use crate::ui::widgets::{caption, grouped, nothing_yet, role_mark};
 
@@ -13,17 +12,15 @@ const FEW: u64 = 3;
 
 /// File by file one line for each kind of diagnostic, which unfolds.
 pub fn diagnostics_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let loaded = || {
-        let parts = Role::ALL.into_iter();
-        parts.filter_map(|role| Some((role, state.document.part(role)?)))
-    };
-    let total: u64 = loaded()
-        .map(|(_, p)| p.loaded.model.diagnostics.total())
-        .sum();
-    if total == 0 {
-        let title = match loaded().next() {
-            Some(_) => "No problems found",
-            None => "No file yet",
+    let mut files = state
+        .document
+        .files_with_diagnostics()
+        .enumerate()
+        .peekable();
+    if files.peek().is_none() {
+        let title = match state.document.has_any_part() {
+            Ok(()) => "No problems found",
+            Err(_) => "No file yet",
         };
         let hint = "What the reader has to say stands here with file and line";
         nothing_yet(ui, title, hint);
@@ -33,28 +30,26 @@ pub fn diagnostics_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>
         .id_salt("diagnostics")
         .auto_shrink([false, false])
         .show(ui, |ui| {
-            for (role, part) in loaded() {
-                let diagnostics = &part.loaded.model.diagnostics;
-                if diagnostics.is_empty() {
-                    continue;
-                }
+            for (number, (role, part)) in files {
                 ui.horizontal(|ui| {
                     role_mark(ui, role);
-                    ui.label(part.loaded.file_name());
+                    ui.label(part.file_name());
                     if ui.small_button("Copy").clicked() {
-                        let lines: Vec<String> =
-                            diagnostics.iter().map(ToString::to_string).collect();
+                        let all = part.diagnostics().into_iter().flat_map(Diagnostics::iter);
+                        let lines: Vec<String> = all.map(ToString::to_string).collect();
                         let (text, what) = (lines.join("\n"), "Diagnostics".to_owned());
                         commands.push(ExportCommand::CopyText { text, what }.into());
                     }
                 });
-                kinds_ui(ui, role, diagnostics);
+                for (list, diagnostics) in part.diagnostics().into_iter().enumerate() {
+                    ui.push_id((number, list), |ui| kinds_ui(ui, diagnostics));
+                }
             }
         });
 }
 
 /// The most severe kinds first.
-fn kinds_ui(ui: &mut Ui, role: Role, diagnostics: &Diagnostics) {
+fn kinds_ui(ui: &mut Ui, diagnostics: &Diagnostics) {
     let mut kinds: Vec<_> = diagnostics.counts().filter(|(_, n)| *n > 0).collect();
     kinds.sort_by_key(|(kind, _)| std::cmp::Reverse(kind.severity()));
     for (kind, n) in kinds {
@@ -62,7 +57,7 @@ fn kinds_ui(ui: &mut Ui, role: Role, diagnostics: &Diagnostics) {
         let count = grouped(usize::try_from(n).unwrap_or(usize::MAX));
         let title = RichText::new(format!("{sign} {count} × {}", kind.label())).color(color);
         CollapsingHeader::new(title)
-            .id_salt((role.word(), kind.label()))
+            .id_salt(kind.label())
             .default_open(n <= FEW)
             .show(ui, |ui| {
                 let mut n_kept = 0;
