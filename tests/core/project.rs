@@ -127,6 +127,28 @@ fn the_step_before_a_project_was_opened_is_not_saved_into_its_file() {
     assert_eq!(window.state.project_path(), Some(&path));
 }
 
+#[test]
+fn unsaved_work_before_a_project_is_told_with_the_way_back_to_it() {
+    let (_folder, [crash, stamped, path]) = folder();
+    let mut window = worked(&crash, &stamped);
+    save(&mut window, &path);
+    let is_told = |window: &mut Window| {
+        window.close_toasts();
+        let paths = vec![path.clone()];
+        window.apply(FileCommand::Open { paths, role: None });
+        let mut toasts = window.state.log.notices.toasts();
+        toasts.any(|n| n.text.contains("unsaved work") && n.offers == [Action::Undo])
+    };
+    assert!(!is_told(&mut window), "all of it is saved");
+    window.act(Action::FlipX);
+    let before = window.state.document.clone();
+    assert!(is_told(&mut window));
+    assert!(!window.state.is_unsaved());
+    window.act(Action::Undo);
+    assert_eq!(window.state.document, before);
+    assert!(window.state.is_unsaved());
+}
+
 fn pose_bits(pose: &Similarity) -> Vec<u64> {
     let numbers = pose.rotation.iter().chain(pose.translation.iter());
     numbers.chain([&pose.scale]).map(|x| x.to_bits()).collect()

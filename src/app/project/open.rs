@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use super::window::WindowEntry;
 use crate::app::{
-    AppState, Dialog, Document, Effect, Further, LogStep, Mapping, MatchResult, NoticeLevel, Part,
-    Placing, PointPairs, ShownGeometry, StampedPose,
+    Action, AppState, Dialog, Document, Effect, Further, LogStep, Mapping, MatchResult,
+    NoticeLevel, Part, Placing, PointPairs, ShownGeometry, StampedPose,
 };
 use crate::jobs::{
     JobKind, Located, MeasureLevelInput, OpenedPart, OpenedProject, ProjectFile, ProjectRequest,
@@ -53,6 +53,7 @@ impl AppState {
         self.previews.drop_all();
         let window = self.read_window(&project);
         let parts = (&parts, &further[..]);
+        let was_unsaved = self.is_unsaved();
         let effects = self.place_project(&name, &project, parts, window.as_ref());
         self.show_project(&project, window);
         self.view.hidden_files = hidden_files(&project, parts);
@@ -61,6 +62,9 @@ impl AppState {
         let text = format!("opened {name}: {}", self.work_title());
         self.work()
             .log_step(LogStep::Project, None, text, Some(took));
+        if was_unsaved {
+            self.tell_unsaved_before();
+        }
         let mut all = vec![Effect::SaveSettings];
         all.extend(filed);
         all.extend(effects);
@@ -68,6 +72,14 @@ impl AppState {
             all.extend(self.restore_mapping());
         }
         all
+    }
+
+    /// The project is saved, so that nothing is asked when the program ends.
+    fn tell_unsaved_before(&mut self) {
+        let text = "The unsaved work before it is one undo step away";
+        let offers = &[Action::Undo];
+        self.work()
+            .offer_at(NoticeLevel::Note, LogStep::Project, text, offers);
     }
 
     fn tell_changed_files(
