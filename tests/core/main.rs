@@ -9,6 +9,7 @@ mod app_further_look;
 mod app_map_pose;
 mod app_mapping;
 mod app_mapping_look;
+mod app_meanwhile;
 mod assess;
 mod autosave;
 mod border_deviation;
