@@ -10,6 +10,7 @@ use crate::role::Role;
 impl AppState {
     /// Changes the state as the command says and returns what has to be done outside. A command
     /// that makes no sense now (its action is disabled) changes nothing.
+    #[must_use]
     pub fn apply(&mut self, command: impl Into<Command>) -> Vec<Effect> {
         let command = command.into();
         if let Some(section) = Section::of_command(&command) {

@@ -317,7 +317,7 @@ mod tests {
         for (typed, theme) in [("light", Theme::Light), ("dark", Theme::Dark)] {
             let entry = state.palette(typed).remove(0);
             for command in entry.commands(&state) {
-                state.apply(command);
+                let _ = state.apply(command);
             }
             assert_eq!(state.settings.theme, theme);
             assert_eq!(state.palette("")[0].label, entry.label);
@@ -332,7 +332,7 @@ mod tests {
         assert!(thinning.reason.is_some(), "no part is loaded");
         let entry = state.palette("colour: part").remove(0);
         for command in entry.commands(&state) {
-            state.apply(command);
+            let _ = state.apply(command);
         }
         assert_eq!(state.view.display.color_by, ColorBy::Part);
         // Groups stand together, each once.
@@ -376,7 +376,7 @@ mod tests {
         for label in ["Preferences…", "About"] {
             let entry = state.palette(label).remove(0);
             for command in entry.commands(&state) {
-                state.apply(command);
+                let _ = state.apply(command);
             }
         }
         let labels: Vec<String> = state.palette("").into_iter().map(|e| e.label).collect();

@@ -321,30 +321,28 @@ impl Shell {
         }
     }
 
-    fn save(&mut self) {
+    /// Writes the preferences where they changed; what is told if they cannot be.
+    fn save(&mut self) -> Option<Command> {
         if !std::mem::take(&mut self.is_unsaved) {
-            return;
+            return None;
         }
         let preferences = Preferences {
             settings: self.state.settings.clone(),
             window: self.place,
         };
-        let written = self.preferences.write(&preferences);
-        if let Err(error) = written
-            && !std::mem::replace(&mut self.has_told_unsaved, true)
-        {
-            let text = format!("Preferences cannot be saved: {error}");
-            self.state
-                .apply(NoticeCommand::Tell(NoticeLevel::Warning, text));
+        let error = self.preferences.write(&preferences).err()?;
+        if std::mem::replace(&mut self.has_told_unsaved, true) {
+            return None;
         }
+        let text = format!("Preferences cannot be saved: {error}");
+        Some(NoticeCommand::Tell(NoticeLevel::Warning, text).into())
     }
 
-    /// Draws the pictures that are wanted and reports what became of earlier ones.
-    fn take_pictures(&mut self, ctx: &egui::Context) {
+    /// Draws the pictures that are wanted; what became of earlier ones.
+    fn take_pictures(&mut self, ctx: &egui::Context) -> Vec<Command> {
         let news = self.pictures.take(&self.state, &mut self.viewports, ctx);
-        for (level, text) in news {
-            self.state.apply(NoticeCommand::Tell(level, text));
-        }
+        let tell = |(level, text)| NoticeCommand::Tell(level, text).into();
+        news.into_iter().map(tell).collect()
     }
 
     /// Files that were dropped. One over a 3D window is meant for it; where that was is told by the pointer,
@@ -490,10 +488,11 @@ impl eframe::App for Shell {
         if self.state.needs_autosave() {
             self.run_commands(vec![ProjectCommand::Autosave.into()], ctx);
         }
-        self.take_pictures(ctx);
+        let mut told = self.take_pictures(ctx);
         self.update_title(ctx);
         self.remember_place(ctx);
-        self.save();
+        told.extend(self.save());
+        self.run_commands(told, ctx);
     }
 
     /// A tooltip stays while the pointer rests on its widget, also over a dialog that a key opened: for one frame
@@ -541,7 +540,8 @@ impl eframe::App for Shell {
 
     fn on_exit(&mut self) {
         self.is_unsaved = true;
-        self.save();
+        // Nobody is left to be told.
+        let _ = self.save();
         self.worker.cancel_all();
     }
 }

@@ -1677,7 +1677,7 @@ fn settle(state: &mut AppState, worker: &Worker, effects: Vec<Effect>) {
     carry_out(effects);
     while state.jobs.is_busy() {
         let event = worker.wait_event(Duration::from_secs(300)).unwrap();
-        state.apply(Command::Live(Box::new(worker.live())));
+        carry_out(state.apply(Command::Live(Box::new(worker.live()))));
         carry_out(state.apply(event));
     }
 }

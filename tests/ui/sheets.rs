@@ -10,7 +10,7 @@ use super::layout::{faults, texts};
 /// A sheet over nothing.
 fn sheet(dialog: Dialog, size: Vec2) -> Harness<'static, AppState> {
     let mut state = AppState::new(Settings::default());
-    state.apply(ViewCommand::SetDialog(Some(dialog)));
+    let _ = state.apply(ViewCommand::SetDialog(Some(dialog)));
     let mut harness = Harness::builder().with_size(size).build_ui_state(
         |ui, state: &mut AppState| {
             let mut commands = Vec::new();
