@@ -166,13 +166,9 @@ impl AppState {
     pub fn when_text(&self, unix: u64) -> String {
         const DAY: i64 = 86_400;
         let ago = self.log.clock.unix_at(self.log.now).saturating_sub(unix);
-        let local = self
-            .log
-            .clock
-            .day_time_at(self.log.now)
-            .as_secs()
-            .cast_signed()
-            - ago.cast_signed();
+        // Past midnight the time of day goes on counting.
+        let day_time = self.log.clock.day_time_at(self.log.now).as_secs();
+        let local = day_time.cast_signed() % DAY - ago.cast_signed();
         let time = std::time::Duration::from_secs(local.rem_euclid(DAY).cast_unsigned());
         let minutes = &clock_text(time)[..5];
         if (0..DAY).contains(&local) {
