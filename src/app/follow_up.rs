@@ -45,6 +45,8 @@ pub(super) enum FollowUp {
     PartReselected(Role),
     /// Further stamped files are to be read again: all, or those of these files.
     ReadFurtherAgain(Option<BTreeSet<PathBuf>>),
+    /// The further stamped files went with the crash part that they stood for.
+    FurtherDropped,
     /// A level was made.
     LevelMade,
     /// A match was taken over.
@@ -101,13 +103,11 @@ impl AppState {
                 return topics.reduce.reduce_again(&mut work, role);
             }
             FollowUp::ReadFurtherAgain(changed) => {
+                return self.read_further_again(changed.as_ref());
+            }
+            FollowUp::FurtherDropped => {
                 let (mut work, topics) = self.split();
-                return topics.mapping.read_again(&mut work, |part| {
-                    let is_among = |files: &BTreeSet<PathBuf>| {
-                        part.files().iter().any(|file| files.contains(file))
-                    };
-                    changed.as_ref().is_none_or(is_among)
-                });
+                return topics.mapping.clear_list(&mut work);
             }
             FollowUp::LevelMade => self.view.shown = ShownGeometry::Reduced,
             FollowUp::Matched {
@@ -162,6 +162,15 @@ impl AppState {
             FollowUp::Quit => return self.quit(),
         }
         Vec::new()
+    }
+
+    fn read_further_again(&mut self, changed: Option<&BTreeSet<PathBuf>>) -> Vec<Effect> {
+        let (mut work, topics) = self.split();
+        topics.mapping.read_again(&mut work, |part| {
+            let is_among =
+                |files: &BTreeSet<PathBuf>| part.files().iter().any(|file| files.contains(file));
+            changed.is_none_or(is_among)
+        })
     }
 
     fn write_project(&self, path: PathBuf, replaces: Option<u64>) -> Effect {

@@ -1836,6 +1836,49 @@ fn several_selected_parts_are_hidden_and_isolated_in_one_step() {
 }
 
 #[test]
+fn what_is_selected_goes_with_its_file() {
+    let mut window = Window::with_both();
+    let select = |window: &mut Window, id| {
+        let role = Role::Crash;
+        window.apply(PartCommand::Select(Some(PartRef { role, id })));
+        assert_eq!(window.state.parts.selected.len(), 1);
+    };
+    let is_selected = |window: &Window| !window.state.parts.selected.is_empty();
+    window.open("car.k", Role::Crash);
+    select(&mut window, 22);
+    window.apply(FileCommand::Reload(Role::Crash));
+    assert!(is_selected(&window), "the same file read again");
+    window.apply(FileCommand::Close(Role::Crash));
+    assert!(!is_selected(&window));
+    assert!(Action::HideSelected.enabled(&window.state).is_err());
+    // Another deck has other parts, also where they have the same numbers.
+    window.open("crash.k", Role::Crash);
+    select(&mut window, 11);
+    window.open("panel_crash.k", Role::Crash);
+    assert!(!is_selected(&window));
+    // A step back leads to a deck without the part.
+    window.open("car.k", Role::Crash);
+    select(&mut window, 22);
+    window.act(Action::Undo);
+    assert_eq!(window.part(Role::Crash).loaded.file_name(), "panel_crash.k");
+    assert!(!is_selected(&window));
+}
+
+#[test]
+fn times_of_today_stay_times_of_today_after_midnight() {
+    let mut state = AppState::default();
+    let half_past_eleven = Duration::from_secs(23 * 3600 + 1800);
+    state.log.clock = Clock {
+        day_time: half_past_eleven,
+        unix: 1_000_000,
+    };
+    state.tick(Duration::from_secs(3600));
+    let now = 1_000_000 + 3600;
+    assert_eq!(state.when_text(now - 600), "00:20");
+    assert_eq!(state.when_text(now - 3600), "23:30, yesterday");
+}
+
+#[test]
 fn the_camera_brings_all_selected_parts_into_view() {
     let mut window = Window::with_both();
     let height = |window: &mut Window, ids: &[u64]| {

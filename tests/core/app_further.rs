@@ -639,6 +639,42 @@ fn the_list_tells_what_is_read_matched_and_wrong() {
 }
 
 #[test]
+fn the_list_begins_anew_with_another_pair() {
+    let halves = Halves::new();
+    let mut window = halves.window();
+    let n_rows = |window: &Window| window.state.stamped_rows().len();
+    let add_missing = |window: &mut Window| {
+        window.apply(MapCommand::AddFurther(
+            halves.folder.path().join("gone.dynain"),
+        ));
+        assert!(matches!(states(window)[1], StampedState::NotRead(_)));
+    };
+    add_missing(&mut window);
+    window.apply(FileCommand::Close(Role::Crash));
+    window.open(halves.crash.to_str().unwrap(), Role::Crash);
+    assert_eq!(n_rows(&window), 1);
+
+    let path = halves.folder.path().join("work.shapematch");
+    save(&mut window, &path);
+    add_missing(&mut window);
+    window.apply(ProjectCommand::Open(ProjectRequest {
+        path,
+        ..ProjectRequest::default()
+    }));
+    assert_eq!(n_rows(&window), 1);
+
+    // A file that is being read was meant for the crash part before.
+    window.holds = true;
+    window.apply(MapCommand::AddFurther(halves.stamped[1].clone()));
+    assert_eq!(states(&window)[1], StampedState::Reading);
+    window.act(Action::Swap);
+    assert_eq!(n_rows(&window), 1);
+    window.finish_held();
+    assert_eq!(n_rows(&window), 1);
+    assert!(window.state.document.mapping.further.is_empty());
+}
+
+#[test]
 fn further_files_follow_the_crash_part() {
     let halves = Halves::new();
     let mut window = halves.with_both();

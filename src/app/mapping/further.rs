@@ -460,6 +460,18 @@ impl MappingState {
         self.reading.remove(&revision);
     }
 
+    /// The list begins anew: what is being read for it is no longer waited for, and what could not be read or
+    /// matched is forgotten.
+    pub(in crate::app) fn clear_list(&mut self, work: &mut Work<'_>) -> Vec<Effect> {
+        self.unread.clear();
+        self.unplaced.clear();
+        self.restoring = None;
+        let reading = std::mem::take(&mut self.reading).into_keys();
+        reading
+            .flat_map(|revision| work.cancel(JobKey::LoadFurther(revision)))
+            .collect()
+    }
+
     /// Takes a file out of the list, whatever has become of it.
     pub(super) fn remove(&mut self, work: &mut Work<'_>, revision: u64) -> Vec<Effect> {
         if self.reading.remove(&revision).is_some() {
@@ -561,8 +573,13 @@ fn placing(run: &MatchRun, crash_revision: u64, work: &Work<'_>) -> Placing {
     }
 }
 
-/// Says that the further stamped files went with the old crash part.
-pub(in crate::app) fn tell_dropped(work: &mut Work<'_>, n: usize) {
+/// So many further stamped files went with the old crash part; `None` if it is still there. What is read for it
+/// goes too.
+pub(in crate::app) fn further_dropped(work: &mut Work<'_>, n: Option<usize>) {
+    let Some(n) = n else {
+        return;
+    };
+    work.follow(FollowUp::FurtherDropped);
     if n == 0 {
         return;
     }

@@ -11,7 +11,7 @@ mod shown_files;
 mod stamped_rows;
 
 pub use command::MapCommand;
-pub(super) use further::{FURTHER_WITHOUT_POSE, NewFurther, tell_dropped};
+pub(super) use further::{FURTHER_WITHOUT_POSE, NewFurther, further_dropped};
 pub use further::{Further, MappingState, Placing};
 pub use picture::{MapDisplay, MapPicture};
 pub use probe::ProbeReport;

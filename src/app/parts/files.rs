@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::{FileCommand, Guess, PartsState};
 use crate::app::follow_up::FollowUp;
-use crate::app::mapping::tell_dropped;
+use crate::app::mapping::further_dropped;
 use crate::app::work::Work;
 use crate::app::{Action, Effect, LogStep, NoticeLevel, Part, Settings, StampedPose, facts};
 use crate::formats::ReadOptions;
@@ -191,19 +191,20 @@ impl PartsState {
         let name = format!("Close the {} part", role.word());
         let revision = work.history.next_revision();
         work.previews.drop_all();
-        let mut n_dropped = 0;
+        let mut n_dropped = None;
         work.commit(name, |document| {
             *document.parts.get_mut(role) = None;
             document.result = None;
             if role == Role::Crash {
-                n_dropped = document.drop_further();
+                n_dropped = Some(document.drop_further());
             }
             document.pose = StampedPose {
                 revision,
                 ..StampedPose::default()
             };
         });
-        tell_dropped(work, n_dropped);
+        self.forget_missing(work.document);
+        further_dropped(work, n_dropped);
         Vec::new()
     }
 
@@ -216,12 +217,12 @@ impl PartsState {
     fn exchange(&mut self, work: &mut Work<'_>) {
         let revision = work.history.next_revision();
         work.previews.drop_all();
-        let mut n_dropped = 0;
+        let mut n_dropped = None;
         let has_swapped = work.commit("Swap the parts", |document| {
             if document.parts.crash.is_some() || document.parts.stamped.is_some() {
                 document.parts.swap();
                 document.result = None;
-                n_dropped = document.drop_further();
+                n_dropped = Some(document.drop_further());
                 document.pose = StampedPose {
                     revision,
                     ..StampedPose::default()
@@ -238,7 +239,7 @@ impl PartsState {
                 None,
             );
             remember_roles(work);
-            tell_dropped(work, n_dropped);
+            further_dropped(work, n_dropped);
         }
     }
 
@@ -401,9 +402,14 @@ impl PartsState {
         let (revision, pose_revision) =
             (work.history.next_revision(), work.history.next_revision());
         work.previews.drop_all();
-        let mut n_dropped = 0;
+        let mut n_dropped = None;
         let had_result = work.document.result.is_some();
         let file = part.file_name();
+        let old = work.document.part(role);
+        if old.is_none_or(|old| old.source != source) {
+            // Another deck may have a part of the same number.
+            self.selected.retain(|part| part.role != role);
+        }
         work.commit(name, |document| {
             let old = document.parts.get_mut(role);
             let same = old.take().filter(|old| old.source == source);
@@ -421,12 +427,13 @@ impl PartsState {
                 };
                 // Further stamped files stand for the crash part that they were added to.
                 if role == Role::Crash {
-                    n_dropped = document.drop_further();
+                    n_dropped = Some(document.drop_further());
                 }
             }
             *document.parts.get_mut(role) = Some(new);
         });
-        tell_dropped(work, n_dropped);
+        self.forget_missing(work.document);
+        further_dropped(work, n_dropped);
         if had_result && work.document.result.is_none() {
             let text =
                 format!("{file} ended the result of the match before it; undo brings it back");
@@ -508,6 +515,7 @@ impl PartsState {
         if are_all_meant {
             self.all_meant_for.push(work.document.stamp().parts);
         }
+        self.forget_missing(work.document);
         work.log_step(LogStep::Select, Some(role), line, Some(took));
         if let Some(line) = tools {
             work.log_at(NoticeLevel::Note, LogStep::Select, Some(role), line, None);

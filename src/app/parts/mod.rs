@@ -20,7 +20,7 @@ pub use unit_memory::UnitMemory;
 pub use units::UnitHint;
 pub(super) use units::length_factor_of;
 
-use super::{Document, GestureId, OfParts};
+use super::{Document, GestureId, OfParts, Part};
 use crate::pipeline::load::LoadSettings;
 use crate::role::{PerRole, Role};
 
@@ -64,15 +64,22 @@ struct Guess {
     n_pending: usize,
 }
 
+impl Document {
+    /// True if a deck has this part.
+    fn knows_part(&self, part: PartRef) -> bool {
+        let has = |p: &Part| p.facts.parts.iter().any(|row| row.id == part.id);
+        self.part(part.role).is_some_and(has)
+    }
+}
+
 impl PartsState {
     /// A file could not be read, or was not waited for.
     pub(super) fn load_ended(&mut self) {
         self.guess.n_pending = self.guess.n_pending.saturating_sub(1);
     }
 
-    /// What is selected may be gone after a step back.
+    /// What is selected may be gone after a step back, or with its file.
     pub(super) fn forget_missing(&mut self, document: &Document) {
-        let is_there = |part: &PartRef| document.part(part.role).is_some();
-        self.selected.retain(is_there);
+        self.selected.retain(|part| document.knows_part(*part));
     }
 }

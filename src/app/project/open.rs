@@ -54,7 +54,9 @@ impl AppState {
         let window = self.read_window(&project);
         let parts = (&parts, &further[..]);
         let was_unsaved = self.is_unsaved();
-        let effects = self.place_project(&name, &project, parts, window.as_ref());
+        let (mut work, topics) = self.split();
+        let mut effects = topics.mapping.clear_list(&mut work);
+        effects.extend(self.place_project(&name, &project, parts, window.as_ref()));
         self.show_project(&project, window);
         self.view.hidden_files = hidden_files(&project, parts);
         let is_as_mapped = project.is_mapped && is_all_same(&project, parts);
