@@ -23,7 +23,7 @@ impl AppState {
                 Vec::new()
             }
             JobStage::Failed(message) => {
-                self.take_failed(event.key, message, event.elapsed);
+                self.take_failed(event.key, event.stamp, message, event.elapsed);
                 Vec::new()
             }
             // It ended before the worker heard the question; the answer to the user stands.
@@ -256,7 +256,7 @@ impl AppState {
         }
     }
 
-    fn take_failed(&mut self, key: JobKey, message: String, elapsed: Duration) {
+    fn take_failed(&mut self, key: JobKey, stamp: Stamp, message: String, elapsed: Duration) {
         self.end_of(key);
         let (step, role) = step_of(key);
         let what_now = match key {
@@ -276,6 +276,8 @@ impl AppState {
             JobKey::Match => topics.matching.match_failed(&work, message),
             JobKey::LoadFurther(revision) => topics.mapping.load_failed(revision, message),
             JobKey::PlaceFurther => topics.mapping.place_failed(message),
+            // Parts and pose may be others by now, of which nothing is known.
+            JobKey::Compare => topics.inspect.give_up_comparing(stamp),
             _ => {}
         }
     }
@@ -288,7 +290,6 @@ impl AppState {
             }
             // One that a newer load took the place of is none of those that are waited for.
             JobKey::Load(_) if !self.jobs.is_active(key) => self.parts.load_ended(),
-            JobKey::Compare => self.inspect.give_up_comparing(self.document.stamp()),
             _ => {}
         }
     }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use shapematch::app::*;
 use shapematch::geometry::{Plane, Point3, Vector3};
-use shapematch::jobs::{JobKey, JobKind};
+use shapematch::jobs::{JobId, JobKey, JobKind, JobStage};
 use shapematch::pipeline::inspect::Comparison;
 use shapematch::role::{PerRole, Role};
 
@@ -132,6 +132,23 @@ fn a_cancelled_comparison_is_not_asked_for_again_by_itself() {
     assert!(window.held.is_empty(), "no second try");
     window.act(Action::UpdateDeviation);
     assert!(matches!(window.held[0].1, JobKind::Compare(_)));
+}
+
+#[test]
+fn a_comparison_that_failed_is_tried_again_at_another_pose_alone() {
+    let freshness_after = |moved: f64| {
+        let mut window = Window::with_both();
+        let asked_at = window.state.document.stamp();
+        if moved != 0.0 {
+            nudge(&mut window, moved);
+        }
+        let stage = JobStage::Failed("the memory is full".to_owned());
+        window.tell(JobId(99), JobKey::Compare, asked_at, stage);
+        window.act(Action::ToggleDeviation);
+        window.state.freshness()
+    };
+    assert_eq!(freshness_after(0.5), Freshness::Current);
+    assert_eq!(freshness_after(0.0), Freshness::Missing);
 }
 
 #[test]
