@@ -201,6 +201,12 @@ pub fn sentence(text: &str) -> String {
     capital(text) + end
 }
 
+/// A factor between units with six digits: 25.4, also where it was computed as 25.400000000000002.
+pub fn tidy_factor(factor: f64) -> String {
+    let rounded: f64 = format!("{factor:.5e}").parse().unwrap_or(factor);
+    rounded.to_string()
+}
+
 /// What follows the name of a file whose lengths are multiplied: `", lengths × 1000"`; nothing for 1.
 pub fn factor_note(length_factor: f64) -> String {
     if length_factor == 1.0 {
@@ -309,6 +315,12 @@ impl Lengths {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn factors_are_free_of_rounding() {
+        let told = [1000.0, 25.400000000000002, 1.0 / 25.4, 1e-9].map(tidy_factor);
+        assert_eq!(told, ["1000", "25.4", "0.0393701", "0.000000001"]);
+    }
 
     #[test]
     fn messages_lose_the_numbers_of_errors() {

@@ -532,6 +532,8 @@ fn units_are_hinted_once_and_the_factor_is_one_undo_step() {
     window.open("crash.k", Role::Crash);
     window.open("metres.k", Role::Stamped);
     assert_eq!(window.state.hinted_length_factor(), Some(1000.0));
+    let (label, _) = window.state.unit_remedy().unwrap();
+    assert_eq!(label, "Multiply stamped lengths by 1000");
     let before = window.state.document.clone();
     window.apply(FileCommand::SetLengthFactor {
         role: Role::Stamped,

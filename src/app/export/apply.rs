@@ -10,6 +10,7 @@ use crate::jobs::{Destination, ExportRequest, Exported, JobKind};
 use crate::pipeline::outputs::{MeshOutput, Output, OutputInput};
 use crate::report::MatrixForm;
 use crate::role::{PerRole, Role};
+use crate::text::tidy_factor;
 
 impl Work<'_> {
     pub(in crate::app) fn apply_export(&mut self, command: ExportCommand) -> Vec<Effect> {
@@ -132,9 +133,10 @@ impl Work<'_> {
             return false;
         }
         let text = format!(
-            "The lengths of the stamped file are multiplied by {factor}, and the cards have no field for \
+            "The lengths of the stamped file are multiplied by {}, and the cards have no field for \
              that. Write “{}” (Save part as), open it in place of the present file, match again, and then \
              make the cards.",
+            tidy_factor(factor),
             MeshOutput::Converted.label().trim_end_matches('…')
         );
         self.notify(NoticeLevel::Warning, text);

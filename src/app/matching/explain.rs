@@ -2,8 +2,7 @@
 
 use super::Failure;
 use crate::app::{
-    Action, AppState, BottomTab, Command, FileCommand, MatchCommand, MatchResult, PartCommand,
-    ViewCommand,
+    Action, AppState, BottomTab, Command, MatchCommand, MatchResult, PartCommand, ViewCommand,
 };
 use crate::assess::{
     Assessment, Clarity, Reason, ShapeReason, Twin, Verdict, as_well, error_beside,
@@ -93,7 +92,7 @@ impl AppState {
                 }),
             }];
         }
-        let units = self.unit_remedy().map(|remedy| Cause {
+        let units = self.units_remedy().map(|remedy| Cause {
             title: "Different units".to_owned(),
             evidence: "The sizes of the two files differ by a factor between units.".to_owned(),
             remedy: Some(remedy),
@@ -138,22 +137,9 @@ impl AppState {
         commands.map(|command| (label.to_owned(), vec![command]))
     }
 
-    fn unit_remedy(&self) -> Option<(String, Vec<Command>)> {
-        let hint = self.unit_hint()?;
-        let factor = self.hinted_length_factor()?;
-        let role = Role::Stamped;
-        let (label, command) = match hint.unit {
-            Some(unit) => {
-                let units = Some(unit.into());
-                let command = FileCommand::SetUnits { role, units };
-                (format!("Treat stamped as {unit}"), command)
-            }
-            None => {
-                let command = FileCommand::SetLengthFactor { role, factor };
-                (format!("Multiply stamped lengths by {factor}"), command)
-            }
-        };
-        Some((label, vec![command.into()]))
+    fn units_remedy(&self) -> Option<(String, Vec<Command>)> {
+        let (label, command) = self.unit_remedy()?;
+        Some((label, vec![command]))
     }
 
     fn parts_cause(&self, assessment: &Assessment) -> Option<Cause> {
@@ -187,7 +173,7 @@ impl AppState {
         Some(Cause {
             title: "Different units".to_owned(),
             evidence,
-            remedy: self.unit_remedy(),
+            remedy: self.units_remedy(),
         })
     }
 

@@ -14,6 +14,7 @@ use crate::jobs::{FormingEvidence, JobKey, JobKind, PartFacts, PartSource, Proje
 use crate::pipeline::load::{LoadSettings, LoadedPart, same_parts_line, usual_selection};
 use crate::pipeline::project::is_project;
 use crate::role::{PerRole, Role};
+use crate::text::{counted, tidy_factor};
 
 /// A part that was read, or made again from the model in memory.
 pub(in crate::app) struct NewPart {
@@ -108,8 +109,9 @@ impl PartsState {
             });
             let left: Vec<String> = left.collect();
             let text = format!(
-                "{n_paths} files were dropped; the first two are opened, not {}: further stamped files go into the \
+                "{} were dropped; the first two are opened, not {}: further stamped files go into the \
                  list of section 4",
+                counted(n_paths, "file"),
                 left.join(", ")
             );
             work.log_at(NoticeLevel::Note, LogStep::Load, None, text, None);
@@ -282,10 +284,10 @@ impl PartsState {
         let factor = part.settings.length_factor;
         match part.settings.units {
             _ if old_factor == Some(factor) => {
-                format!("Match {}", facts::counted(facts.used.len(), "part"))
+                format!("Match {}", counted(facts.used.len(), "part"))
             }
             Some(units) => format!("{} is in {}", part.file_name(), units.label()),
-            None => format!("Lengths × {factor}"),
+            None => format!("Lengths × {}", tidy_factor(factor)),
         }
     }
 

@@ -1,13 +1,13 @@
 //! The units of both files and the question where they disagree.
 
-use super::PartsState;
-use crate::app::{AppState, Document, Settings};
+use super::{FileCommand, PartsState};
+use crate::app::{AppState, Command, Document, Settings};
 use crate::pipeline::forming_values::FormingValue;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::units::{PairUnits, missing_factor};
 use crate::registration::guess_unit;
 use crate::role::{PerRole, Role};
-use crate::text::Lengths;
+use crate::text::{Lengths, tidy_factor};
 use crate::units::{KnownUnits, LengthUnit};
 
 /// Sizes or units of the two parts differ by about a known factor between units.
@@ -56,17 +56,12 @@ impl UnitHint {
     /// The same of a file that is named before: "looks 1000 × smaller than crash".
     pub fn words(&self) -> String {
         if self.factor >= 1.0 {
-            format!("looks {} × smaller than crash", tidy(self.factor))
+            format!("looks {} × smaller than crash", tidy_factor(self.factor))
         } else {
-            let factor = tidy(1.0 / self.factor);
+            let factor = tidy_factor(1.0 / self.factor);
             format!("looks {factor} × larger than crash")
         }
     }
-}
-
-/// 25.4 rather than 25.400000000000002.
-fn tidy(factor: f64) -> f64 {
-    (factor * 1e6).round() / 1e6
 }
 
 fn size_ratio(crash: f64, stamped: f64) -> Option<f64> {
@@ -162,6 +157,25 @@ impl AppState {
     /// The hint about units, until it is answered.
     pub fn unit_hint(&self) -> Option<UnitHint> {
         self.parts.unit_hint(&self.document, &self.settings)
+    }
+
+    /// What makes both files agree while the hint stands: the label of its button and what it does.
+    pub fn unit_remedy(&self) -> Option<(String, Command)> {
+        let hint = self.unit_hint()?;
+        let factor = self.hinted_length_factor()?;
+        let role = Role::Stamped;
+        let (label, command) = match hint.unit {
+            Some(unit) => {
+                let units = Some(unit.into());
+                let label = format!("Treat stamped as {unit}");
+                (label, FileCommand::SetUnits { role, units })
+            }
+            None => {
+                let label = format!("Multiply stamped lengths by {}", tidy_factor(factor));
+                (label, FileCommand::SetLengthFactor { role, factor })
+            }
+        };
+        Some((label, command.into()))
     }
 
     /// The units of one file. While it is asked whether the stamped file is in another unit, they

@@ -12,7 +12,7 @@ use crate::app::{
 };
 use crate::jobs::JobKey;
 use crate::role::Role;
-use crate::text::counted;
+use crate::text::{counted, tidy_factor};
 use crate::ui::focus;
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
@@ -173,7 +173,7 @@ fn detail(role: Role, part: &Part, state: &AppState) -> String {
         text += &format!(" · t {}", state.lengths_of(role).of(thickness));
     }
     if part.length_factor() != 1.0 {
-        text += &format!(" · lengths × {}", part.length_factor());
+        text += &format!(" · lengths × {}", tidy_factor(part.length_factor()));
     }
     if report.n_diagnostics > 0 {
         text += &format!(" · ⚠ {}", report.n_diagnostics);
@@ -209,7 +209,7 @@ fn file_menu_ui(
     let n_diagnostics = part.loaded.report.n_diagnostics;
     let diagnostics = match n_diagnostics {
         0 => "Diagnostics".to_owned(),
-        n => format!("{n} diagnostics"),
+        n => counted(usize::try_from(n).unwrap_or(usize::MAX), "diagnostic"),
     };
     if ui.button(diagnostics).clicked() {
         commands.push(ViewCommand::SetTab(BottomTab::Diagnostics).into());

@@ -73,29 +73,15 @@ fn units_menu_ui(
 
 /// The sizes or the units of the two files hint at a factor between them.
 pub fn unit_question_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let (Some(hint), Some(factor)) = (state.unit_hint(), state.hinted_length_factor()) else {
+    let (Some(hint), Some((label, command))) = (state.unit_hint(), state.unit_remedy()) else {
         return;
     };
-    let role = Role::Stamped;
     card(ui, |ui| {
         let palette = Palette::of(ui);
         let text = RichText::new(format!("⚠ {}.", hint.text())).color(palette.check);
         ui.add(Label::new(text).wrap());
-        let (label, command) = match hint.unit {
-            Some(unit) => (
-                format!("Treat stamped as {unit}"),
-                FileCommand::SetUnits {
-                    role,
-                    units: Some(unit.into()),
-                },
-            ),
-            None => (
-                format!("Multiply stamped lengths by {factor}"),
-                FileCommand::SetLengthFactor { role, factor },
-            ),
-        };
         if ui.button(label).clicked() {
-            commands.push(command.into());
+            commands.push(command);
         }
         if ui.button("The sizes do differ").clicked() {
             commands.push(FileCommand::DismissUnitHint.into());
