@@ -63,8 +63,8 @@ impl Reason {
                 n_parts,
                 size_ratio,
             } => format!(
-                "the crash side holds {n_parts} parts, together about {} × larger than the stamped \
-                 part: choose the part",
+                "the crash side holds {}, together about {} × larger than the stamped part: choose the part",
+                counted(*n_parts, "part"),
                 rounded(*size_ratio)
             ),
             Self::DifferentUnits { size_ratio, unit } => different_units(*size_ratio, *unit),

@@ -8,7 +8,7 @@ use anyhow::bail;
 use super::args::BenchArgs;
 use super::{check_outputs, json_target, print, progress, takes_stdout, write_json};
 use crate::pipeline::bench::map::{MapBench, map_bench, table_names};
-use crate::text::{fixed, grouped};
+use crate::text::{counted, fixed, grouped};
 
 /// Measures and prints the tables.
 pub fn run(args: &BenchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
@@ -98,12 +98,12 @@ fn describe(bench: &MapBench) -> String {
     let [cpu, peak] = more.map(Option::unwrap_or_default);
     let _ = writeln!(
         text,
-        "\n{} → {} elements, {} layers, all quantities, {} threads: mapped in {:.0} ms{cpu}; {:.0} MB of states \
+        "\n{} → {} elements, {}, all quantities, {}: mapped in {:.0} ms{cpu}; {:.0} MB of states \
          written in {:.0} ms ({:.0} MB/s); results of both sides {:.0} MB{peak}",
         grouped(from),
         grouped(to),
-        speed.n_layers,
-        speed.n_threads,
+        counted(speed.n_layers, "layer"),
+        counted(speed.n_threads, "thread"),
         speed.map_ms,
         megabytes,
         speed.write_ms,

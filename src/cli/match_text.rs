@@ -41,7 +41,7 @@ fn side(text: &mut String, role: Role, part: &LoadedPart) {
     let ids: Vec<String> = part.chosen_part_ids().iter().map(u64::to_string).collect();
     let parts = match ids.len() {
         0..=4 => ids.join(", "),
-        n => format!("{} … ({n} parts)", ids[..3].join(", ")),
+        n => format!("{} … ({})", ids[..3].join(", "), counted(n, "part")),
     };
     let triangles = counted(part.mesh.n_triangles(), "triangle");
     let (role, path) = (capital(role.word()), part.path.display());

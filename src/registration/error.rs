@@ -28,7 +28,7 @@ pub enum RegistrationError {
         n_target: usize,
     },
     /// Fewer than three pairs with positive weight and finite coordinates.
-    #[error("{n_pairs} usable pairs do not fix a pose, at least three are needed")]
+    #[error("at least three usable pairs are needed to fix a pose, not {n_pairs}")]
     TooFewPairs {
         /// Number of usable pairs.
         n_pairs: usize,

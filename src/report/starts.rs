@@ -5,6 +5,7 @@ use serde::{Serialize, Serializer};
 use super::pose::rows;
 use super::record::role_of;
 use crate::registration::{StartKind, StartOutcome, StartRecord, Termination};
+use crate::text::counted;
 
 /// How a start came to be: "surface normal 40°, stamped nodes, normals flipped".
 pub fn start_name(start: &StartRecord) -> String {
@@ -108,7 +109,7 @@ pub fn start_counts(starts: &[StartRecord]) -> String {
         .collect();
     match starts.len() {
         1 => format!("1 start ({})", counts.first().map_or("", |(kind, _)| *kind)),
-        n => format!("{n} starts ({})", parts.join(", ")),
+        n => format!("{} ({})", counted(n, "start"), parts.join(", ")),
     }
 }
 
@@ -144,7 +145,9 @@ pub fn outcome_words(outcome: StartOutcome) -> String {
         StartOutcome::Won => "best".into(),
         StartOutcome::RunnerUp => "close in the search".into(),
         StartOutcome::MergedInto { start } => format!("merged into start {}", start + 1),
-        StartOutcome::Dropped { after } => format!("stopped after {after} iterations"),
+        StartOutcome::Dropped { after } => {
+            format!("stopped after {}", counted(after, "iteration"))
+        }
         StartOutcome::Failed => "no fit".into(),
     }
 }
@@ -191,4 +194,16 @@ pub(super) fn entries<S: Serializer>(
         first: rows(&start.first),
         last: rows(&start.last),
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_iteration_is_no_plural() {
+        let words = |after| outcome_words(StartOutcome::Dropped { after });
+        assert_eq!(words(1), "stopped after 1 iteration");
+        assert_eq!(words(12), "stopped after 12 iterations");
+    }
 }

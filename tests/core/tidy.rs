@@ -241,6 +241,56 @@ fn window_and_report_keep_to_the_words_agreed_on() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
+#[test]
+fn counts_agree_with_their_nouns() {
+    let places = ["ui", "app", "report", "assess", "cli"];
+    let is_shown = |name: &str| places.iter().any(|place| name.starts_with(place));
+    let mut found = Vec::new();
+    for (name, text) in sources().into_iter().filter(|(name, _)| is_shown(name)) {
+        for (number, line) in text.lines().enumerate() {
+            let is_comment = line.trim_start().starts_with("//");
+            if !is_comment && has_fixed_plural(line) {
+                found.push(format!("{name}:{}: {}", number + 1, line.trim()));
+            }
+        }
+    }
+    let found = found.join("\n");
+    assert!(
+        found.is_empty(),
+        "one is no plural, so use counted:\n{found}"
+    );
+}
+
+/// True for `{n_parts} parts` and `{n} parts`, in which one would be a plural. A share, as in "2 of {n} parts", has one.
+fn has_fixed_plural(line: &str) -> bool {
+    line.match_indices("{n").any(|(at, _)| {
+        let is_share = line[..at].ends_with(" of ");
+        let Some((value, rest)) = line[at + 1..].split_once("} ") else {
+            return false;
+        };
+        let is_count = value == "n" || value.starts_with("n_");
+        let is_letter = |c: &char| c.is_ascii_lowercase();
+        let word: String = rest.chars().take_while(is_letter).collect();
+        let is_verb = ["is", "was", "has", "as"].contains(&word.as_str());
+        is_count && !is_share && word.ends_with('s') && !is_verb
+    })
+}
+
+#[test]
+fn a_fixed_plural_is_seen() {
+    for line in ["\"{n} starts\"", "\"for {n_parts} parts, with\""] {
+        assert!(has_fixed_plural(line), "{line}");
+    }
+    for line in [
+        "\"{n} of\"",
+        "\"1 of {n} starts\"",
+        "\"{name} stands\"",
+        "\"{n} is\"",
+    ] {
+        assert!(!has_fixed_plural(line), "{line}");
+    }
+}
+
 /// True if the line holds the word, not as a part of a longer one.
 fn has_word(line: &str, word: &str) -> bool {
     let is_letter = |c: char| c.is_alphanumeric() || c == '_';

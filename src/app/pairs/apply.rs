@@ -4,6 +4,7 @@ use super::{PairCommand, PairTool, PairsState, PickedPoint, PointPair, place_of}
 use crate::app::work::Work;
 use crate::app::{LogStep, NoticeLevel};
 use crate::role::Role;
+use crate::text::counted;
 
 impl PairsState {
     pub(in crate::app) fn apply(&mut self, work: &mut Work<'_>, command: PairCommand) {
@@ -99,13 +100,9 @@ fn fit_pairs(work: &mut Work<'_>) {
         return;
     }
     if let Ok(found) = work.document.pair_fit() {
-        let n_pairs = found.residuals.len();
-        let text = format!("{n_pairs} pairs, RMS {}", work.lengths().of(found.fit.rmse));
-        work.commit_pose(
-            format!("Fit {n_pairs} pairs"),
-            None,
-            found.fit.target_from_source,
-        );
+        let pairs = counted(found.residuals.len(), "pair");
+        let text = format!("{pairs}, RMS {}", work.lengths().of(found.fit.rmse));
+        work.commit_pose(format!("Fit {pairs}"), None, found.fit.target_from_source);
         work.log_step(LogStep::Pairs, None, text, None);
     }
 }

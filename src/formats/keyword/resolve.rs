@@ -130,6 +130,7 @@ fn tell_no_elements(assembly: &mut Assembly, model: &Model) {
     let kind = DiagnosticKind::NoElements;
     let message = match model.nodes.len() {
         0 => "the deck has neither nodes nor shells nor solids".to_owned(),
+        1 => "the deck has one node and neither shells nor solids".to_owned(),
         n => format!("the deck has {n} nodes and neither shells nor solids"),
     };
     let diagnostic = with_position(Diagnostic::new(kind, message), whole_file(model));

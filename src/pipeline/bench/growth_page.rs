@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::growth::{GrowthRow, GrowthTable};
 use super::robustness_page::{Axis, STYLE};
-use crate::text::{fixed, grouped, length};
+use crate::text::{counted, fixed, grouped, length};
 
 /// The heads of the columns.
 pub const GROWTH_COLUMNS: [&str; 5] = [
@@ -38,11 +38,11 @@ impl GrowthTable {
             )
         };
         format!(
-            "The generated floor, both meshes finer and finer, {} threads. Prepare: weld, topology, normals \
+            "The generated floor, both meshes finer and finer, {}. Prepare: weld, topology, normals \
              and trees of both meshes. Match: search, finish on the full meshes and assessment, without \
              reading and preparing. The match grows like {}, preparing like {} (least squares over the \
              logarithms of all sizes).",
-            self.threads,
+            counted(self.threads, "thread"),
             power(self.match_exponent),
             power(self.prepare_exponent)
         )

@@ -9,7 +9,7 @@ use crate::assess::deviation::{DeviationStats, Histogram};
 use crate::colormap::{ColorMap, ColorScale, Rgb};
 use crate::registration::{MatchOutcome, StartOutcome, StartRecord};
 use crate::role::PerRole;
-use crate::text::{Lengths, percent, trimmed};
+use crate::text::{Lengths, counted, percent, trimmed};
 
 /// Width of the charts and of the legend of the colours.
 const WIDTH: f64 = 960.0;
@@ -247,7 +247,8 @@ pub fn convergence(outcome: &MatchOutcome, lengths: Lengths) -> Option<Markup> {
         }
         (axes.bottom_axis(&ticks, "iteration"))
     };
-    let description = format!("Residual over up to {n} iterations, logarithmic");
+    let iterations = counted(n, "iteration");
+    let description = format!("Residual over up to {iterations}, logarithmic");
     Some(svg([WIDTH, 302.0], &description, &content))
 }
 

@@ -12,7 +12,7 @@ use crate::jobs::JobKey;
 use crate::registration::{Method, StartMethod};
 use crate::role::Role;
 use crate::settings::Choice as _;
-use crate::text::whole_percent;
+use crate::text::{counted, whole_percent};
 use crate::ui::focus;
 use crate::ui::theme::{Palette, ROW, TALL, UNIT};
 use crate::ui::widgets::{
@@ -85,7 +85,7 @@ fn align_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         });
         let text = match state.previews.start {
             Some(index) => format!("start {} of {}", index + 1, starts.len()),
-            None => format!("{} starts", starts.len()),
+            None => counted(starts.len(), "start"),
         };
         let label = ui.add_sized(vec2(104.0, ROW), egui::Label::new(text));
         label.on_hover_text("The first poses are shown one by one; the real pose stays");
@@ -218,7 +218,10 @@ fn status_ui(ui: &mut Ui, state: &AppState) {
     if n_starts > 0 {
         let fraction = n_ended as f32 / n_starts as f32;
         ui.add(ProgressBar::new(fraction).desired_height(4.0))
-            .on_hover_text(format!("{n_ended} of {n_starts} starts have ended"))
+            .on_hover_text(format!(
+                "Ended: {n_ended} of {}",
+                counted(n_starts, "start")
+            ))
             .accessible_name("Starts that have ended");
     }
     if let Some(latest) = job.latest {

@@ -5,7 +5,7 @@ use egui::{Align, Button, Layout, RichText, Ui, vec2};
 use crate::app::{Action, AppState, Command, PairCommand, PointPair};
 use crate::registration::PointPairFit;
 use crate::role::Role;
-use crate::text::sentence;
+use crate::text::{counted, sentence};
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
     Look, action_button, caption, card, icon_button, paragraph, role_mark, secondary,
@@ -137,9 +137,9 @@ fn doubt_ui(ui: &mut Ui, state: &AppState, fit: &PointPairFit) {
             ui.add(egui::Label::new(text).wrap());
         }
         None => {
-            let n_pairs = fit.residuals.len();
+            let pairs = counted(fit.residuals.len(), "pair");
             let rmse = state.lengths().of(fit.fit.rmse);
-            caption(ui, format!("{n_pairs} pairs, RMS {rmse} after the fit"));
+            caption(ui, format!("{pairs}, RMS {rmse} after the fit"));
         }
     }
 }

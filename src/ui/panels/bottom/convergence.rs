@@ -9,7 +9,7 @@ use crate::app::{AppState, Command, Preview, PreviewCommand};
 use crate::registration::{IterationRecord, StartRecord};
 use crate::report::distances::{self, RESIDUAL};
 use crate::report::start_name;
-use crate::text::Lengths;
+use crate::text::{Lengths, counted};
 use crate::ui::focus;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{icon_button, nothing_yet, percent};
@@ -213,7 +213,7 @@ fn figures_ui(ui: &mut Ui, curves: &Curves<'_>) {
         }),
         None => iterations
             .last()
-            .map(|step| format!("{n_steps} iterations · {}", words(step))),
+            .map(|step| format!("{} · {}", counted(n_steps, "iteration"), words(step))),
     };
     let text = text.unwrap_or_else(|| "no iteration yet".to_owned());
     let text = RichText::new(text).small();

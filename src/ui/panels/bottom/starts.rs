@@ -12,7 +12,7 @@ use crate::report::distances::{KEPT, PAIRS_P95, RESIDUAL};
 use crate::report::{
     outcome_words, start_data_words, start_kind_help, start_kind_words, start_name,
 };
-use crate::text::Lengths;
+use crate::text::{Lengths, counted};
 use crate::ui::theme::{Palette, UNIT};
 use crate::ui::widgets::{caption, nothing_yet, percent, tight};
 
@@ -107,13 +107,13 @@ fn open_groups(ui: &Ui) -> Vec<usize> {
 }
 
 fn head_ui(ui: &mut Ui, table: &Table<'_>) {
-    let n_starts = table.n_starts;
+    let starts = counted(table.n_starts, "start");
     let text = if table.state.jobs.locking_job().is_some() {
-        format!("{n_starts} starts so far; rows fill while they run")
+        format!("{starts} so far; rows fill while they run")
     } else {
         let n_best = table.n_best;
         format!(
-            "{n_best} of {n_starts} starts ended in the best pose · point at a row to see its pose, \
+            "{n_best} of {starts} ended in the best pose · point at a row to see its pose, \
              click to take it"
         )
     };

@@ -326,8 +326,8 @@ fn point_text(hovered: &HoverPosition<'_>) -> Option<String> {
             position,
             ..
         } => {
-            let (n, value) = (decade_text(position.x), decade_text(position.y));
-            Some(format!("{plot_name}\n{n} triangles: {value}"))
+            let (at, value) = (decade_text(position.x), decade_text(position.y));
+            Some(format!("{plot_name}\n{at} triangles: {value}"))
         }
         HoverPosition::Elsewhere { .. } => None,
     }

@@ -233,11 +233,11 @@ fn facts(over: &Overlay<'_>, role: Role) -> String {
     let mut facts = triangles;
     let n_parts = part.facts.used.len();
     if n_parts > 1 {
-        facts += &format!(" · {n_parts} parts");
+        facts += &format!(" · {}", counted(n_parts, "part"));
     }
     let n_files = 1 + state.document.mapping.further.len();
     if role == Role::Stamped && n_files > 1 {
-        facts += &format!(" · first of {n_files} files");
+        facts += &format!(" · first of {}", counted(n_files, "file"));
     }
     match state.units_of(role) {
         Some(known) => facts + " · " + known.units.length.symbol(),
