@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use crate::jobs::{JobEvent, JobId, JobKey, JobKind, JobStage, Live, LiveIteration, PartSource};
 use crate::monitor::Progress;
+use crate::pipeline::names::file_name;
 use crate::text::capital;
 
 /// The running job as the window shows it.
@@ -92,11 +93,11 @@ impl JobBoard {
             JobKind::Load {
                 source: PartSource::File(path),
                 ..
-            } => path.file_name(),
-            JobKind::LoadFurther(input) => input.file.file_name(),
+            } => Some(path),
+            JobKind::LoadFurther(input) => Some(&input.file),
             _ => None,
         };
-        let file = file.map(|name| name.to_string_lossy().into_owned());
+        let file = file.map(|path| file_name(path));
         self.waiting.push((kind.key(), file));
     }
 

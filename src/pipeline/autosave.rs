@@ -14,6 +14,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use super::PipelineError;
+use super::names::file_name;
 use super::outputs::{Content, Target, overwritten_inputs};
 use super::project::{EXTENSION, Project, ProjectError};
 
@@ -299,7 +300,7 @@ impl Session {
         {
             return Ok(());
         }
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let name = file_name(path);
         let present = match Project::read(path) {
             Ok((present, _)) => present.saved_at,
             Err(ProjectError::Newer { .. }) => {

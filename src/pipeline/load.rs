@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::id_map::{IdMap, Origins};
+use super::names::file_name;
 use super::{PipelineError, millis_since};
 use crate::formats::{
     self, Diagnostic, Diagnostics, Disk, FileHash, FileSource, Memory, Model, ReadOptions,
@@ -236,9 +237,7 @@ impl LoadedPart {
 
     /// The file name without its folder.
     pub fn file_name(&self) -> String {
-        self.path
-            .file_name()
-            .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+        file_name(&self.path)
     }
 
     /// What the reader found in the file, and what was left out of the mesh.

@@ -2,6 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+/// Name of a file without its folder.
+pub fn file_name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or(path.as_os_str());
+    name.to_string_lossy().into_owned()
+}
+
 /// Name of a file, after as much of its folder as tells it from others of that name: cut at its end, it is still told
 /// apart.
 pub fn told_apart<'a>(path: &Path, all: impl Iterator<Item = &'a Path>) -> String {
@@ -11,7 +17,7 @@ pub fn told_apart<'a>(path: &Path, all: impl Iterator<Item = &'a Path>) -> Strin
     let same_name = same_name.filter(|other| other.file_name() == path.file_name());
     let others: Vec<&Path> = same_name.filter_map(|other| other.parent()).collect();
     if others.is_empty() {
-        return name.to_string_lossy().into_owned();
+        return file_name(path);
     }
     let n_folders = folder.components().count();
     let end_of = |folder: &Path, n: usize| -> PathBuf {

@@ -17,6 +17,7 @@ use super::widgets::{caption, large_button, paragraph};
 use crate::app::{Command, ExportCommand, FileCommand, MapCommand, PictureChoice, ProjectCommand};
 use crate::formats::Format;
 use crate::jobs::{Located, ProjectFile, ProjectRequest};
+use crate::pipeline::names::file_name;
 use crate::pipeline::outputs::Output;
 use crate::role::Role;
 
@@ -305,7 +306,7 @@ impl Dialogs {
             Found::NoFile => format!("{} does not exist.", path.display()),
             Found::IsFolder => format!("{} is a folder.", path.display()),
             Found::InUse(file) => {
-                let name = file.file_name().unwrap_or_default().to_string_lossy();
+                let name = file_name(&file);
                 format!("{name} is one of the files that are read here: choose another name.")
             }
             Found::NotMade(reason) => format!("The folder cannot be created: {reason}."),

@@ -7,6 +7,7 @@ use super::{CopyForm, ExportCommand, PictureChoice, PicturePlace};
 use crate::app::work::Work;
 use crate::app::{Effect, LogStep, NoticeLevel, Settings, Shared};
 use crate::jobs::{Destination, ExportRequest, Exported, JobKind};
+use crate::pipeline::names::file_name;
 use crate::pipeline::outputs::{MeshOutput, Output, OutputInput};
 use crate::report::MatrixForm;
 use crate::role::{PerRole, Role};
@@ -209,11 +210,7 @@ impl Work<'_> {
                 // The message says at once what the log says in rows.
                 let notes = exported.notes.iter().map(String::as_str);
                 // A toast is cut at its end: there stands the folder, which may be long.
-                let name = path
-                    .file_name()
-                    .unwrap_or(path.as_os_str())
-                    .to_string_lossy();
-                let name = format!("written: {name}");
+                let name = format!("written: {}", file_name(&path));
                 let folder = path
                     .parent()
                     .map(|folder| format!("in {}", folder.display()));

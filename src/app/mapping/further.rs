@@ -1,7 +1,7 @@
 //! Further stamped files on the same crash part: read, matched by themselves, and mapped from with the first.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -16,7 +16,7 @@ use crate::jobs::{FurtherInput, JobKey, JobKind, PlaceInput, Stamp};
 use crate::pipeline::load::{LoadSettings, LoadedPart, usual_selection};
 use crate::pipeline::map::{PoseOrigin, placing_recipe, pose_warning};
 use crate::pipeline::match_parts::MatchRun;
-use crate::pipeline::names::told_apart;
+use crate::pipeline::names::{file_name, told_apart};
 use crate::role::{PerRole, Role};
 use crate::text::{counted, grouped};
 use crate::units::Units;
@@ -593,9 +593,4 @@ pub(in crate::app) fn further_dropped(work: &mut Work<'_>, n: Option<usize>) {
         if n == 1 { "it" } else { "them" },
     );
     work.log_at(NoticeLevel::Note, LogStep::Map, None, text, None);
-}
-
-pub(super) fn file_name(path: &Path) -> String {
-    let name = path.file_name().unwrap_or(path.as_os_str());
-    name.to_string_lossy().into_owned()
 }

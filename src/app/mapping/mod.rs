@@ -34,6 +34,7 @@ use crate::pipeline::map::{
     ChangedParts, ElementLists, MapRecipe, MapRecord, MapRun, OtherResult, PoseOrigin,
 };
 pub use crate::pipeline::map::{DoubtfulElement, FurtherPose, UnmappedElement};
+use crate::pipeline::names::file_name;
 use crate::role::{PerRole, Role};
 
 /// What undo covers of the mapping.
@@ -412,9 +413,6 @@ fn end_comparison(work: &mut Work<'_>) {
 
 /// Names of files without their folders.
 pub fn file_names(paths: &[String]) -> String {
-    let name = |path: &String| {
-        let name = Path::new(path).file_name();
-        name.map_or_else(|| path.clone(), |name| name.to_string_lossy().into_owned())
-    };
-    paths.iter().map(name).collect::<Vec<_>>().join(", ")
+    let names = paths.iter().map(|path| file_name(Path::new(path)));
+    names.collect::<Vec<_>>().join(", ")
 }

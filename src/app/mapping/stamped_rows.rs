@@ -2,13 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::further::file_name;
 use super::{Further, FurtherPose, MappingState};
 use crate::app::{AppState, Part, UnitHint, facts};
 use crate::assess::Verdict;
 use crate::jobs::JobKey;
 use crate::pipeline::map::PoseOrigin;
-use crate::pipeline::names::told_apart;
+use crate::pipeline::names::{file_name, told_apart};
 use crate::role::PerRole;
 use crate::units::Units;
 

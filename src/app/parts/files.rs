@@ -12,6 +12,7 @@ use crate::app::{Action, Effect, LogStep, NoticeLevel, Part, Settings, StampedPo
 use crate::formats::ReadOptions;
 use crate::jobs::{FormingEvidence, JobKey, JobKind, PartFacts, PartSource, ProjectRequest};
 use crate::pipeline::load::{LoadSettings, LoadedPart, same_parts_line, usual_selection};
+use crate::pipeline::names::file_name;
 use crate::pipeline::project::is_project;
 use crate::role::{PerRole, Role};
 use crate::text::{counted, tidy_factor};
@@ -103,11 +104,7 @@ impl PartsState {
         }
         let n_paths = paths.len();
         if n_paths > 2 {
-            let left = paths[2..].iter().map(|path| {
-                let name = path.file_name().unwrap_or_default();
-                name.to_string_lossy().into_owned()
-            });
-            let left: Vec<String> = left.collect();
+            let left: Vec<String> = paths[2..].iter().map(|path| file_name(path)).collect();
             let text = format!(
                 "{} were dropped; the first two are opened, not {}: further stamped files go into the \
                  list of section 4",

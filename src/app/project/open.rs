@@ -1,7 +1,7 @@
 //! Opening of a project, which replaces what every topic knows.
 
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -14,6 +14,7 @@ use crate::jobs::{
     JobKind, Located, MeasureLevelInput, OpenedPart, OpenedProject, ProjectFile, ProjectRequest,
     Stamp,
 };
+use crate::pipeline::names::file_name;
 use crate::pipeline::project::{
     FoundPart, FurtherEntry, PartEntry, PlacingEntry, Project, ResultEntry,
 };
@@ -312,11 +313,6 @@ fn hidden_files(
     let hidden = first.into_iter().chain(further);
     let hidden = hidden.filter(|(entry, _)| entry.is_hidden);
     hidden.map(|(_, path)| path.clone()).collect()
-}
-
-fn file_name(path: &Path) -> String {
-    let name = path.file_name().unwrap_or(path.as_os_str());
-    name.to_string_lossy().into_owned()
 }
 
 fn part_of(opened: &OpenedPart, entry: &PartEntry, revision: u64) -> Part {

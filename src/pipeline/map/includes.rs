@@ -13,6 +13,7 @@ use crate::formats::model::ReadFile;
 use crate::formats::{self, Disk};
 use crate::monitor::Monitor;
 use crate::pipeline::load::LoadedPart;
+use crate::pipeline::names::file_name;
 
 impl MapWriter<'_> {
     /// What an include does to a file must not be done to the states in its copy, nor to another part.
@@ -103,10 +104,7 @@ fn original<'a>(file: &MapFile, crash: &'a LoadedPart) -> Option<&'a ReadFile> {
 /// True if an include line with this name means the file: no other file of the deck is called so.
 fn is_named(path: &Path, name: &str, crash: &LoadedPart) -> bool {
     let last = name.rsplit(['/', '\\']).next().unwrap_or_default();
-    let is_called = |path: &Path| {
-        let own = path.file_name().unwrap_or_default().to_string_lossy();
-        own.to_lowercase() == last.to_lowercase()
-    };
+    let is_called = |path: &Path| file_name(path).to_lowercase() == last.to_lowercase();
     let files = &crash.model.files;
     let mut called = files.iter().filter(|read| is_called(&read.path));
     called.all(|read| read.path == path) && is_called(path)

@@ -17,6 +17,7 @@ use crate::formats::{self, Model, Replaced};
 use crate::geometry::chunks::for_chunks;
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::load::LoadedPart;
+use crate::pipeline::names::file_name;
 use crate::pipeline::outputs::{Content, Target, overwritten_inputs};
 use crate::text::parts_by_id;
 
@@ -206,7 +207,7 @@ pub(super) fn copies_without_states(
 /// `mapped.k` and `car.k` → `mapped_car.k`, then `mapped_2_car.k`.
 fn copy_path(beside: &Path, file: &Path, n: usize) -> PathBuf {
     let stem = beside.file_stem().unwrap_or_default().to_string_lossy();
-    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let name = file_name(file);
     beside.with_file_name(match n {
         1 => format!("{stem}_{name}"),
         n => format!("{stem}_{n}_{name}"),

@@ -18,6 +18,7 @@ use crate::formats::{self, Model};
 use crate::geometry::chunks::for_chunks;
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::load::LoadedPart;
+use crate::pipeline::names::file_name;
 use crate::text::counted;
 
 /// Where strains of the two surfaces stand.
@@ -86,10 +87,9 @@ impl MapFile {
     /// Says whose place it takes, and what is left to do so that it does; `None` for a file that is none of
     /// the deck's.
     pub fn place_taken(&self) -> Option<String> {
-        let name_of = |path: &Path| path.file_name().unwrap_or_default().display().to_string();
-        let replaced = name_of(self.replaces.as_ref()?);
+        let replaced = file_name(self.replaces.as_ref()?);
         Some(match &self.included_by {
-            Some(by) => format!("{} includes it instead of {replaced}", name_of(by)),
+            Some(by) => format!("{} includes it instead of {replaced}", file_name(by)),
             None if self.is_left_out => format!("to be included instead of {replaced}"),
             None => format!("to be used instead of {replaced}"),
         })
@@ -433,7 +433,7 @@ impl MapWriter<'_> {
         states.extend_from_slice(head.as_bytes());
         let beside = elements_path(path);
         if !self.thickness.is_empty() {
-            let name = beside.file_name().unwrap_or_default().to_string_lossy();
+            let name = file_name(&beside);
             let hint = format!(
                 "$ The thickness of the elements is in {name}: include it too and take the same elements\n\
                  $ out of the crash deck, because the card defines them anew.\n"

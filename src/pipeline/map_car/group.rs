@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::together::{Given, given, that_give_way};
-use super::{CarRecipe, Claim, StampedFile, name_of};
+use super::{CarRecipe, Claim, StampedFile};
 use crate::formats::Selection;
 use crate::geometry::Similarity;
 use crate::mapping::Status;
@@ -17,6 +17,7 @@ use crate::pipeline::map::{
     WriteKind, bare_elements, deck_comments, file_lines, map_parts, map_record, map_report,
     mapped_by_solver, write_mapping,
 };
+use crate::pipeline::names::file_name;
 use crate::pipeline::write_file::write_file_unless_cancelled;
 use crate::role::PerRole;
 
@@ -137,7 +138,11 @@ impl Group<'_> {
             given: (0..stamped.len())
                 .map(|at| Some(given[members.iter().position(|member| *member == at)?]))
                 .collect(),
-            files: files.files.iter().map(|file| name_of(&file.path)).collect(),
+            files: files
+                .files
+                .iter()
+                .map(|file| file_name(&file.path))
+                .collect(),
             n_old_states: if recipe.map.options.replace_states {
                 0
             } else {

@@ -18,6 +18,7 @@ use super::map::{
     DefaultThickness, LEAST_AREA, MapRecipe, NewStates, car_copies, check_shells, elements_path,
 };
 use super::match_parts::MatchRecipe;
+use super::names::file_name;
 use super::units::PairUnits;
 use super::write_file::{write_file, write_file_unless_cancelled};
 use crate::assess::Verdict;
@@ -243,7 +244,7 @@ fn copies(
     for copy in car_copies(crash, new_states, &beside, &taken, monitor)? {
         write_file_unless_cancelled(&copy.path, &copy.bytes, monitor)?;
         copies.extend(copy.replaces.map(|replaces| CarCopy {
-            file: name_of(&copy.path),
+            file: file_name(&copy.path),
             replaces: replaces.display().to_string(),
         }));
     }
@@ -321,11 +322,6 @@ fn take(row: &mut CarRow, made: &Made, (given, doubt): (&Given, Option<f64>)) {
     } else {
         CarState::Check
     };
-}
-
-fn name_of(path: &Path) -> String {
-    let name = path.file_name().unwrap_or_default();
-    name.to_string_lossy().into_owned()
 }
 
 /// The deck that includes the results of all parts.

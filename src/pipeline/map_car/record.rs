@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::assess::Verdict;
 use crate::pipeline::load::tools_line;
+use crate::pipeline::names::file_name;
 use crate::registration::UnitGuess;
 use crate::text::{counted, fixed, length, parts_by_id, percent};
 
@@ -173,7 +174,7 @@ impl CarRow {
     pub(super) fn new(file: &Path) -> Self {
         Self {
             file: file.display().to_string(),
-            name: super::name_of(file),
+            name: file_name(file),
             state: CarState::None,
             reasons: Vec::new(),
             tools_left_out: Vec::new(),

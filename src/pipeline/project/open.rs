@@ -9,6 +9,7 @@ use crate::formats::{Disk, FileHash};
 use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
 use crate::pipeline::load::{LoadedPart, PartSource};
+use crate::pipeline::names::file_name;
 use crate::role::{PerRole, Role};
 
 /// Where a part of a project is looked for.
@@ -133,10 +134,9 @@ fn refuse_mistaken(
         let found = FileHash::of_file(&Disk, &path, monitor).ok();
         monitor.check()?;
         if let Some(other) = mistaken_for(project, request, file, (&path, found)) {
-            let name = path.file_name().unwrap_or(path.as_os_str());
             refused = Some(format!(
                 "{} is {} of the project, not {}.",
-                name.to_string_lossy(),
+                file_name(&path),
                 other.words(),
                 file.words()
             ));

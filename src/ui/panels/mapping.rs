@@ -15,6 +15,7 @@ use crate::jobs::JobKey;
 use crate::mapping::MapOptions;
 use crate::pipeline::forming_values::LayerChoice;
 use crate::pipeline::map::{MapRecord, PairRecord, PoseOrigin};
+use crate::pipeline::names::file_name;
 use crate::role::Role;
 use crate::settings::{MAP_SETTINGS, Setting};
 use crate::text::{Lengths, fixed, grouped, length, percent, sentence, share};
@@ -256,8 +257,7 @@ fn other_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             let end = ("×", Look::Plain, vec2(ROW, ROW));
             let button = action_button(ui, state, Action::EndMapComparison, end, commands);
             button.accessible_name(Action::EndMapComparison.row().label);
-            let name = file.file_name().unwrap_or_default().to_string_lossy();
-            let name = egui::Label::new(name.as_ref()).truncate();
+            let name = egui::Label::new(file_name(file)).truncate();
             ui.add(name).on_hover_text(file.display().to_string());
         });
     });
