@@ -424,17 +424,9 @@ impl Shell {
     }
 
     fn update_title(&mut self, ctx: &egui::Context) {
-        let name = |role| {
-            let part = self.state.document.part(role);
-            part.map(|part| part.loaded.file_name())
-        };
-        let work = match (name(Role::Crash), name(Role::Stamped)) {
-            (Some(crash), Some(stamped)) => Some(format!("{stamped} on {crash}")),
-            (Some(one), None) | (None, Some(one)) => Some(one),
-            (None, None) => None,
-        };
         let mark = if self.state.is_unsaved() { "● " } else { "" };
-        let title = match self.state.project_name().or(work) {
+        let name = self.state.project_name();
+        let title = match name.or_else(|| self.state.document.title()) {
             Some(name) => format!("{mark}{name} – shapematch"),
             None => "shapematch".to_owned(),
         };

@@ -9,6 +9,7 @@ use crate::formats::Selection;
 use crate::jobs::JobKey;
 use crate::pipeline::load::LoadSettings;
 use crate::role::Role;
+use crate::text::counted;
 
 impl AppState {
     /// True if a part of a deck is matched, or will be as soon as what was chosen is made.
@@ -52,11 +53,11 @@ impl PartsState {
     ) -> Vec<Effect> {
         match command {
             PartCommand::Select(part) => {
-                let known = part.filter(|part| self.knows(work, *part));
+                let known = part.filter(|part| work.document.knows_part(*part));
                 self.selected = known.into_iter().collect();
             }
             PartCommand::ToggleSelected(part) => {
-                if !self.selected.remove(&part) && self.knows(work, part) {
+                if !self.selected.remove(&part) && work.document.knows_part(part) {
                     self.selected.insert(part);
                 }
             }
@@ -82,21 +83,6 @@ impl PartsState {
         Vec::new()
     }
 
-    fn knows(&self, work: &Work<'_>, part: PartRef) -> bool {
-        let has = |p: &Part| p.facts.parts.iter().any(|row| row.id == part.id);
-        work.document.part(part.role).is_some_and(has)
-    }
-
-    /// Title of a part of a deck, or its number.
-    fn part_name(&self, work: &Work<'_>, part: PartRef) -> String {
-        let rows = work.document.part(part.role).map(|p| &p.facts.parts);
-        let row = rows.and_then(|rows| rows.iter().find(|row| row.id == part.id));
-        match row {
-            Some(row) if !row.title.is_empty() => row.title.clone(),
-            _ => format!("part {}", part.id),
-        }
-    }
-
     fn change_part(
         &mut self,
         work: &mut Work<'_>,
@@ -112,11 +98,11 @@ impl PartsState {
     }
 
     fn set_visible(&mut self, work: &mut Work<'_>, part: PartRef, is_visible: bool) {
-        if !self.knows(work, part) {
+        if !work.document.knows_part(part) {
             return;
         }
         let verb = if is_visible { "Show" } else { "Hide" };
-        let name = format!("{verb} {}", self.part_name(work, part));
+        let name = format!("{verb} {}", work.document.part_title(part));
         self.change_part(work, name, part.role, |p| {
             if is_visible {
                 p.hidden.remove(&part.id);
@@ -127,10 +113,10 @@ impl PartsState {
     }
 
     fn show_only(&mut self, work: &mut Work<'_>, part: PartRef) {
-        if !self.knows(work, part) {
+        if !work.document.knows_part(part) {
             return;
         }
-        let name = format!("Isolate {}", self.part_name(work, part));
+        let name = format!("Isolate {}", work.document.part_title(part));
         self.change_part(work, name, part.role, |p| {
             let others = p.facts.parts.iter().map(|row| row.id);
             p.hidden = others.filter(|id| *id != part.id).collect();
@@ -170,8 +156,8 @@ impl PartsState {
     fn selection_name(&self, work: &Work<'_>) -> String {
         let mut selected = self.selected.iter();
         match (selected.next(), selected.next()) {
-            (Some(part), None) => self.part_name(work, *part),
-            _ => format!("{} parts", self.selected.len()),
+            (Some(part), None) => work.document.part_title(*part),
+            _ => counted(self.selected.len(), "part"),
         }
     }
 
@@ -186,10 +172,10 @@ impl PartsState {
     }
 
     fn set_color(&mut self, work: &mut Work<'_>, part: PartRef, color: Option<[u8; 3]>) {
-        if !self.knows(work, part) {
+        if !work.document.knows_part(part) {
             return;
         }
-        let name = format!("Colour of {}", self.part_name(work, part));
+        let name = format!("Colour of {}", work.document.part_title(part));
         self.change_part(work, name, part.role, |p| {
             match color {
                 Some(color) => p.colors.insert(part.id, color),

@@ -64,6 +64,17 @@ impl ProjectState {
     }
 }
 
+impl Document {
+    /// Its files: "stamped.dynain on crash.k"; `None` without any.
+    pub fn title(&self) -> Option<String> {
+        let name = |role| self.part(role).map(|part| part.loaded.file_name());
+        match (name(Role::Crash), name(Role::Stamped)) {
+            (Some(crash), Some(stamped)) => Some(format!("{stamped} on {crash}")),
+            (one, None) | (None, one) => one,
+        }
+    }
+}
+
 impl AppState {
     /// The file of the project, if it has one.
     pub fn project_path(&self) -> Option<&PathBuf> {
@@ -180,12 +191,7 @@ impl AppState {
 
     /// What the work is, in a line: "stamped.dynain on crash.k · GOOD".
     pub fn work_title(&self) -> String {
-        let name = |role| self.document.part(role).map(|part| part.loaded.file_name());
-        let mut title = match (name(Role::Crash), name(Role::Stamped)) {
-            (Some(crash), Some(stamped)) => format!("{stamped} on {crash}"),
-            (Some(one), None) | (None, Some(one)) => one,
-            (None, None) => String::new(),
-        };
+        let mut title = self.document.title().unwrap_or_default();
         if let Some(result) = self.document.current_result() {
             title += " · ";
             title += result.verdict().label();
