@@ -9,6 +9,7 @@ use super::{
     Menu, ProjectCommand, Section, Settings, Theme, ViewCommand,
 };
 use crate::colormap::ColorMap;
+use crate::pipeline::names::file_name;
 use crate::pipeline::outputs::{MeshOutput, Output};
 use crate::report::{CardForm, MatrixForm};
 use crate::text::inside;
@@ -45,6 +46,25 @@ pub struct PaletteEntry {
 }
 
 impl PaletteEntry {
+    /// One that is always possible and has no keys.
+    fn plain(
+        label: impl Into<String>,
+        group: &'static str,
+        help: impl Into<String>,
+        does: Does,
+    ) -> Self {
+        Self {
+            label: label.into(),
+            group,
+            help: help.into(),
+            keys: String::new(),
+            reason: None,
+            is_recent: false,
+            letters: Vec::new(),
+            does,
+        }
+    }
+
     /// The action it stands for, if it is one.
     pub fn action(&self) -> Option<Action> {
         match self.does {
@@ -155,7 +175,7 @@ impl AppState {
             by_hand,
             ViewCommand::ShowMoveByHand,
         ));
-        let locked = why(Action::OpenExample);
+        let locked = self.jobs.is_unlocked().err().map(|reason| reason.0);
         let recent = self.settings.recent.iter();
         entries.extend(recent.map(|path| PaletteEntry {
             label: format!("Open {}", self.settings.recent_name(path)),
@@ -167,15 +187,10 @@ impl AppState {
             ..file("Restore", &session.path, locked)
         });
         entries.extend(sessions);
-        entries.extend(Theme::ALL.map(|theme| PaletteEntry {
-            label: format!("Theme: {}", theme.label().to_lowercase()),
-            group: "Preferences",
-            help: "Colours of the window".to_owned(),
-            keys: String::new(),
-            reason: None,
-            is_recent: false,
-            letters: Vec::new(),
-            does: Does::Theme(theme),
+        entries.extend(Theme::ALL.map(|theme| {
+            let label = format!("Theme: {}", theme.label().to_lowercase());
+            let (group, help) = ("Preferences", "Colours of the window");
+            PaletteEntry::plain(label, group, help, Does::Theme(theme))
         }));
         entries
     }
@@ -183,15 +198,12 @@ impl AppState {
     fn color_entry(&self, by: ColorBy) -> PaletteEntry {
         let mut display = self.view.display.clone();
         display.color_by = by;
+        let label = format!("Colour: {}", inside(by.label()));
+        let help = "What the colours of the parts show";
+        let does = does(ViewCommand::SetDisplay(Box::new(display)));
         PaletteEntry {
-            label: format!("Colour: {}", inside(by.label())),
-            group: by.group(),
-            help: "What the colours of the parts show".to_owned(),
-            keys: String::new(),
             reason: self.missing_for(by),
-            is_recent: false,
-            letters: Vec::new(),
-            does: does(ViewCommand::SetDisplay(Box::new(display))),
+            ..PaletteEntry::plain(label, by.group(), help, does)
         }
     }
 
@@ -223,15 +235,11 @@ impl AppState {
     }
 
     fn action_entry(&self, row: &ActionRow) -> PaletteEntry {
+        let group = row.action.menu().label();
         PaletteEntry {
-            label: row.label.to_owned(),
-            group: row.action.menu().label(),
-            help: row.tooltip.to_owned(),
             keys: row.shortcut().map_or_else(String::new, |s| s.to_string()),
             reason: row.action.enabled(self).err().map(|reason| reason.0),
-            is_recent: false,
-            letters: Vec::new(),
-            does: Does::Action(row.action),
+            ..PaletteEntry::plain(row.label, group, row.tooltip, Does::Action(row.action))
         }
     }
 }
@@ -242,28 +250,13 @@ fn does(command: impl Into<Command>) -> Does {
 
 /// Something that is always possible: where it is, its name and what it does.
 fn place(group: &'static str, label: String, help: &str, command: ViewCommand) -> PaletteEntry {
-    PaletteEntry {
-        label,
-        group,
-        help: help.to_owned(),
-        keys: String::new(),
-        reason: None,
-        is_recent: false,
-        letters: Vec::new(),
-        does: does(command),
-    }
+    PaletteEntry::plain(label, group, help, does(command))
 }
 
 fn export(label: String, command: ExportCommand, reason: Option<&'static str>) -> PaletteEntry {
     PaletteEntry {
-        label,
-        group: "Export",
-        help: String::new(),
-        keys: String::new(),
         reason,
-        is_recent: false,
-        letters: Vec::new(),
-        does: does(command),
+        ..PaletteEntry::plain(label, "Export", "", does(command))
     }
 }
 
@@ -272,19 +265,14 @@ fn write(label: String, kind: Output, reason: Option<&'static str>) -> PaletteEn
 }
 
 fn file(verb: &str, path: &Path, reason: Option<&'static str>) -> PaletteEntry {
-    let name = path.file_name().unwrap_or(path.as_os_str());
+    let label = format!("{verb} {}", file_name(path));
+    let open = FileCommand::Open {
+        paths: vec![path.to_path_buf()],
+        role: None,
+    };
     PaletteEntry {
-        label: format!("{verb} {}", name.to_string_lossy()),
-        group: "Recent",
-        help: path.display().to_string(),
-        keys: String::new(),
         reason,
-        is_recent: false,
-        letters: Vec::new(),
-        does: does(FileCommand::Open {
-            paths: vec![path.to_path_buf()],
-            role: None,
-        }),
+        ..PaletteEntry::plain(label, "Recent", path.display().to_string(), does(open))
     }
 }
 

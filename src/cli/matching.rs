@@ -229,7 +229,6 @@ fn run_match(
     let (number, n_poses) = (asked.pose_number, 1 + run.outcome.alternatives.len());
     match number {
         1 => Ok(run),
-        0 => bail!("--pose-number: the best pose is number 1"),
         _ if number > n_poses => bail!(
             "--pose-number {number}: the match found {}",
             counted(n_poses, "pose")

@@ -58,7 +58,7 @@ fn row_ui(
         .and_then(|index| state.history.row(index, &state.document));
     let name = row.as_ref().map_or("Start", |row| row.name);
     let (is_now, is_undone) = (number == n_done, number > n_done);
-    let can_jump = Action::OpenExample.enabled(state).is_ok() && !is_now;
+    let can_jump = state.jobs.is_unlocked().is_ok() && !is_now;
     let sense = if can_jump {
         Sense::click()
     } else {
