@@ -58,7 +58,7 @@ pub fn overlays_ui(
             Dialog::Messages => messages_ui(ui, state, room, commands),
             Dialog::Picture => {
                 ui.set_width(440.0);
-                title(ui, "Picture", Some(commands));
+                title(ui, "Image", Some(commands));
                 picture_ui(ui, state, commands);
             }
             Dialog::About => about_ui(ui),

@@ -82,7 +82,7 @@ impl Pictures {
                 }
                 None => news.push((
                     NoticeLevel::Error,
-                    "no picture could be taken: nothing is drawn yet".to_owned(),
+                    "no image can be written: nothing is drawn yet".to_owned(),
                 )),
             }
         }
@@ -98,7 +98,7 @@ fn write(picture: Picture, wanted: Wanted, sender: Sender<News>, ctx: egui::Cont
             Ok(path) => (NoticeLevel::Success, format!("written: {}", path.display())),
             Err(error) => (
                 NoticeLevel::Error,
-                format!("the picture could not be written: {error}"),
+                format!("the image could not be written: {error}"),
             ),
         };
         // The window may have closed meanwhile.
@@ -111,7 +111,7 @@ fn save(place: &PicturePlace, inputs: &[PathBuf], bytes: &[u8]) -> anyhow::Resul
     match place {
         PicturePlace::File(path) => {
             let target = Target {
-                name: "the picture".to_owned(),
+                name: "the image".to_owned(),
                 path: path.clone(),
                 content: Output::Picture.content(),
             };

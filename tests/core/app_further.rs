@@ -684,6 +684,9 @@ fn further_files_follow_the_crash_part() {
     window.apply(FileCommand::ReloadAll);
     assert_ne!(first_further(&window), before);
     assert_eq!(verdicts(&window)[1], Some(Verdict::Good));
+    let rows = window.state.log.rows().iter();
+    let added = rows.filter(|row| row.text.ends_with("one more stamped file"));
+    assert_eq!(added.count(), 1, "read again, it is no further one");
     assert!(window.state.document.current_mapping().is_none());
     // A file that changed on disk is offered again.
     let watched = window.state.document.files_read();

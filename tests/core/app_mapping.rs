@@ -126,6 +126,7 @@ fn quantities_are_one_step_each_and_a_running_mapping_can_be_given_up() {
     let mut recipe = window.state.document.mapping.recipe.clone();
     *Quantity::Stress.switch(&mut recipe.options.quantities) = true;
     window.apply(MapCommand::SetRecipe(Box::new(recipe)));
+    assert_eq!(window.state.history.undo_name(), Some("Mapped quantities"));
     assert!(
         window
             .state

@@ -50,7 +50,7 @@ const HISTORY: &[ActionRow] = &[
     },
     ActionRow {
         action: Action::Escape,
-        label: "Cancel tool",
+        label: "Close or cancel",
         tooltip: "Close what is open; then cancel the run",
         keys: Keys::press(&[Shortcut::plain(Key::Escape)]),
         enabled: always,

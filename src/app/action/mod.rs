@@ -322,11 +322,11 @@ actions! {
     SaveCards,
     /// The moved stamped part into a file.
     SaveMoved,
-    /// The choices of a picture.
+    /// The choices of an image.
     PictureOptions,
-    /// Save a picture of the window under the pointer.
+    /// Write an image of the 3D windows as it was chosen last, into the folder of the last one.
     TakePicture,
-    /// A picture without background.
+    /// The same without background.
     TakePictureTransparent,
     /// Search commands.
     Palette,

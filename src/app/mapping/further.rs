@@ -410,10 +410,10 @@ impl MappingState {
             _ => part,
         };
         let name = work.document.stamped_name(&part);
-        let line = format!(
-            "{name}: {}, one more stamped file",
-            counted(part.report.n_triangles, "triangle")
-        );
+        let mut line = format!("{name}: {}", counted(part.report.n_triangles, "triangle"));
+        if replaces.is_none() {
+            line += ", one more stamped file";
+        }
         work.log_step(LogStep::Load, role, line, Some(took));
         if let Some((level, line)) = facts::diagnostics_line(&part) {
             work.log_at(level, LogStep::Load, role, line, None);

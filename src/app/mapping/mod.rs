@@ -295,7 +295,7 @@ impl MappingState {
     pub(super) fn apply(&mut self, work: &mut Work<'_>, command: MapCommand) -> Vec<Effect> {
         match command {
             MapCommand::SetRecipe(recipe) => {
-                work.commit("Mapping options", |document| {
+                work.commit("Mapped quantities", |document| {
                     document.mapping.recipe = *recipe;
                 });
             }

@@ -65,7 +65,7 @@ pub struct ViewState {
     pub column_room: ColumnRoom,
     /// What the user said about the column since the window got this room.
     column: Option<bool>,
-    /// Which of the three sections are unfolded.
+    /// Which of the four sections are unfolded.
     pub sections: Sections,
     /// How often it was asked to unfold what moves the part by hand.
     pub n_asked_by_hand: u64,

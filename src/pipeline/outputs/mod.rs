@@ -210,7 +210,7 @@ impl Output {
             Self::Mapped(WriteKind::Include) => "Mapped results as an include",
             Self::MapReport => "Mapping report as HTML",
             Self::MapTable => "Mapped elements as CSV",
-            Self::Picture => "Picture",
+            Self::Picture => "Image",
             Self::Log => "Log",
         }
     }

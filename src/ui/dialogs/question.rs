@@ -104,6 +104,6 @@ pub(super) fn titles(question: &Question) -> (&'static str, &'static str) {
         Question::Open(Role::Stamped) => ("Open the stamped part", "Open"),
         Question::OtherMapping => ("Compare the mapping with another result", "Compare"),
         Question::Save { .. } => ("Write to a file", "Write"),
-        Question::Picture { .. } => ("Write a picture", "Write"),
+        Question::Picture { .. } => ("Write an image", "Write"),
     }
 }
