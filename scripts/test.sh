@@ -21,7 +21,13 @@ if [ -z "${XDG_RUNTIME_DIR:-}" ]; then
     trap 'rm -rf "$XDG_RUNTIME_DIR"' EXIT
 fi
 
-step() { say "== $*"; "$@"; }
+# step CMD…: runs one check and says how long it took.
+step() {
+    local begin=$SECONDS
+    say "== $*"
+    "$@"
+    say "== $((SECONDS - begin)) s"
+}
 step cargo fmt --check
 # Below the window first: it must build without egui and wgpu.
 step cargo clippy --locked --no-default-features --all-targets -- -D warnings

@@ -24,7 +24,7 @@ pub const DIRECTION: &str = "crash = c · R · stamped + t (column vectors)";
 const CONVENTION: &str = "matrices row by row for column vectors; a mirrored part is mirrored at \
     x = 0 first, then rotated by quaternion or axis and angle";
 
-/// Name and version of this program, with the source revision where it is known.
+/// Name and version of this program, with the source revision where it is known, or that it is a debug build.
 pub fn build_id() -> String {
     let version = concat!("shapematch ", env!("CARGO_PKG_VERSION"));
     match env!("SHAPEMATCH_REVISION") {
