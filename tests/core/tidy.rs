@@ -330,11 +330,12 @@ fn the_readme_shows_every_subcommand() {
 }
 
 /// The pages of the project that name files and options.
-fn pages() -> [(&'static str, String); 4] {
+fn pages() -> [(&'static str, String); 5] {
     [
         "README.md",
         "ARCHITECTURE.md",
         "docs/files.md",
+        "docs/mapping.md",
         "docs/tuning.md",
     ]
     .map(|name| {
