@@ -5,7 +5,8 @@
 //! `matching`, `mapping`, `moving`, `pairs`, `inspect`, `view`, `export`, `project`, `history` and `log`
 //! each have their commands, their own state and what follows from them. A topic is lent its own state
 //! and the work (document, history, jobs, preferences, messages), nothing else; what other topics must do
-//! after a change, it states as a `FollowUp`. `apply.rs` and `follow_up.rs` are the two places where topics meet.
+//! after a change, it states as a `FollowUp`. Topics meet in `apply.rs` and `follow_up.rs`, where results arrive
+//! (`job_events.rs`, `mapping/results.rs`), and where a project is opened (`project/open.rs`).
 //! Nothing here draws, waits or touches the disk, so every behaviour of the window has a test without one.
 
 mod action;

@@ -12,8 +12,8 @@ use super::{
 };
 use crate::geometry::Similarity;
 
-/// Everything the window knows. Panels read it; only [`AppState::apply`] changes it, and hands each
-/// topic its own state and the `Work`.
+/// Everything the window knows. Panels read it; beside the time, which [`AppState::tick`] tells, only
+/// [`AppState::apply`] changes it, and hands each topic its own state and the `Work`.
 #[derive(Debug, Clone, Default)]
 pub struct AppState {
     /// What undo covers.

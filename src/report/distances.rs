@@ -34,7 +34,7 @@ pub const COMPARED_P95: MeasureName = MeasureName {
            direction",
 };
 
-/// How far the pairs of an iteration lie apart.
+/// How far the pairs of an iteration lie apart: `rmse` in registration and in records.
 pub const RESIDUAL: MeasureName = MeasureName {
     name: "residual",
     help: "RMS of the pairs that the last iteration of the start kept, on the points and meshes it ran on",
