@@ -5,7 +5,8 @@ use super::{BorderEdges, BorderLoop, Point3, TriMesh, Vector3};
 /// The sheet lies around a hole: the way out of it points to the middle with at least this mean cosine.
 const INWARD: f64 = 0.3;
 
-/// One border: a loop of border edges, or a chain of them that ends where two sheets touch.
+/// One border: a loop of border edges that passes no vertex twice, or a chain of them that ends where three triangles
+/// meet at an edge.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Border {
     /// Its vertices in the direction of their triangles, which lie to the left.
@@ -83,20 +84,129 @@ mod tests {
     use super::super::Topology;
     use super::*;
 
-    /// A flat sheet of 10 × 10 unit squares without the one in column and row 2.
-    fn sheet() -> TriMesh {
+    /// A flat sheet of 10 × 10 unit squares without those in these columns and rows.
+    fn sheet(left_out: &[(usize, usize)]) -> TriMesh {
         let points = (0..121).map(|i| Point3::new((i % 11) as f64, (i / 11) as f64, 0.0));
         let cells = (0..100).map(|i| (i % 10, i / 10));
-        let triangles = cells.filter(|&cell| cell != (2, 2)).flat_map(|(x, y)| {
+        let cells = cells.filter(|cell| !left_out.contains(cell));
+        let triangles = cells.flat_map(|(x, y)| {
             let a = (y * 11 + x) as u32;
             [[a, a + 1, a + 12], [a, a + 12, a + 11]]
         });
         TriMesh::new(points.collect(), triangles.collect()).unwrap()
     }
 
+    /// Whether each border is a hole, with its length and its middle in thousandths, sorted.
+    fn borders(mesh: &TriMesh) -> Vec<(bool, [i64; 4])> {
+        let found = Border::all(mesh, &edges_of(mesh), &mesh.vertex_normals());
+        let rounded = |length: f64| (1000.0 * length).round() as i64;
+        let figures = found.iter().map(|border| {
+            assert!(border.closed);
+            let [x, y, z] = border.center.into();
+            (border.is_hole, [border.length, x, y, z].map(rounded))
+        });
+        let mut figures: Vec<_> = figures.collect();
+        figures.sort_unstable();
+        figures
+    }
+
+    /// The mesh with its vertices numbered from the last to the first.
+    fn renumbered(mesh: &TriMesh) -> TriMesh {
+        let last = mesh.n_vertices() as u32 - 1;
+        let points = mesh.positions().iter().rev().copied();
+        let triangles = mesh
+            .triangles()
+            .iter()
+            .map(|corners| corners.map(|v| last - v));
+        TriMesh::new(points.collect(), triangles.collect()).unwrap()
+    }
+
+    /// Six triangles around a vertex of which every other one is left out, within a ring of squares and triangles.
+    fn three_holes_at_one_vertex() -> TriMesh {
+        let corner = |i: u32, radius: f64| {
+            let angle = f64::from(i) * std::f64::consts::FRAC_PI_3;
+            Point3::new(radius * angle.cos(), radius * angle.sin(), 0.0)
+        };
+        let ring = |radius: f64| (0..6).map(move |i| corner(i, radius));
+        let points = [Point3::origin()]
+            .into_iter()
+            .chain(ring(1.0))
+            .chain(ring(2.0));
+        let around = (0..6_u32).flat_map(|i| {
+            let (a, b) = (1 + i, 1 + (i + 1) % 6);
+            [[a, a + 6, b + 6], [a, b + 6, b]]
+        });
+        let inner = (0..6_u32).step_by(2).map(|i| [0, 1 + i, 2 + i]);
+        TriMesh::new(points.collect(), around.chain(inner).collect()).unwrap()
+    }
+
+    #[test]
+    fn borders_that_touch_at_a_vertex_are_several_however_the_vertices_are_numbered() {
+        let outline = (false, [40_000, 5000, 5000, 0]);
+        let hole = |x: i64, y: i64| (true, [4000, 1000 * x + 500, 1000 * y + 500, 0]);
+        // A hole that shares a corner with a square cut out of the edge.
+        let notched = sheet(&[(0, 4), (1, 5)]);
+        let notch = borders(&sheet(&[(0, 4)]))[0];
+        let three = [0.0_f64, 1.0, 2.0].map(|third| {
+            let angle = std::f64::consts::FRAC_PI_2 * (1.0 + 4.0 * third / 3.0);
+            let middle = [angle.cos(), angle.sin()].map(|x| (1000.0 * x / 3.0_f64.sqrt()).round());
+            (true, [3000, middle[0] as i64, middle[1] as i64, 0])
+        });
+        let ring = [(false, [12_000, 0, 0, 0])].into_iter().chain(three);
+        for (mesh, expected) in [
+            (
+                sheet(&[(4, 4), (5, 5)]),
+                vec![outline, hole(4, 4), hole(5, 5)],
+            ),
+            (
+                sheet(&[(3, 3), (4, 4), (5, 3), (4, 2)]),
+                vec![
+                    outline,
+                    (false, [4000, 4500, 3500, 0]),
+                    (true, [12_000, 4500, 3500, 0]),
+                ],
+            ),
+            (notched, vec![notch, hole(1, 5)]),
+            (three_holes_at_one_vertex(), ring.collect()),
+        ] {
+            let mut expected = expected;
+            expected.sort_unstable();
+            for mesh in [renumbered(&mesh), mesh] {
+                assert_eq!(borders(&mesh), expected);
+                assert_eq!(borders(&mesh.flipped()), expected);
+            }
+        }
+    }
+
+    #[test]
+    fn no_border_passes_a_vertex_twice() {
+        let mesh = sheet(&[(2, 2), (3, 3), (4, 2), (4, 4), (6, 6), (9, 9), (8, 8)]);
+        let edges = edges_of(&mesh);
+        for edges in [edges.flipped(), edges] {
+            let loops = edges.loops();
+            assert_eq!(
+                loops.iter().map(|l| l.vertices.len()).sum::<usize>(),
+                edges.iter().count()
+            );
+            for BorderLoop { vertices, .. } in &loops {
+                let mut distinct = vertices.clone();
+                distinct.sort_unstable();
+                distinct.dedup();
+                assert_eq!(distinct.len(), vertices.len());
+                assert_eq!(distinct[0], vertices[0]);
+            }
+            assert!(loops.is_sorted_by_key(|l| l.vertices[0]));
+        }
+        assert_eq!(edges_of(&mesh.clone().flipped()), edges_of(&mesh).flipped());
+    }
+
+    fn edges_of(mesh: &TriMesh) -> BorderEdges {
+        BorderEdges::of(mesh, &Topology::of(mesh))
+    }
+
     #[test]
     fn a_sheet_has_a_trim_and_its_hole() {
-        let mesh = sheet();
+        let mesh = sheet(&[(2, 2)]);
         for normal in [Vector3::z(), -Vector3::z()] {
             // Turned over, triangles and normals change together.
             let triangles =
