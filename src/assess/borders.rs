@@ -406,22 +406,14 @@ impl Borders {
                 let holes = borders.iter().filter(|border| border.is_hole);
                 holes.map(|border| hole(border, pose)).collect::<Vec<_>>()
             });
+        let partners = partners(&of_source, &of_target, near);
         let mut is_used = vec![false; of_target.len()];
         let mut alone = Vec::new();
-        for hole in of_source {
-            let candidates = of_target.iter().enumerate().filter(|(i, _)| !is_used[*i]);
-            let off = |other: &Hole| (other.center - hole.center).norm();
-            let same_size = |other: &Hole| {
-                let ratio = other.radius / hole.radius;
-                ratio < SAME_RADIUS && ratio * SAME_RADIUS > 1.0
-            };
-            let nearest = candidates
-                .filter(|(_, other)| same_size(other) && off(other) < near.max(hole.radius))
-                .min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
-            match nearest {
-                Some((i, other)) => {
+        for (hole, partner) in of_source.into_iter().zip(partners) {
+            match partner {
+                Some(i) => {
                     is_used[i] = true;
-                    self.holes.push(HolePair::of(&hole, other));
+                    self.holes.push(HolePair::of(&hole, &of_target[i]));
                 }
                 None => alone.push(hole),
             }
@@ -445,6 +437,32 @@ impl Borders {
             }
         }
     }
+}
+
+/// For each hole of the source the hole of the target of about its size that is the same: of all pairs that lie near
+/// each other the closest first, and of equally close ones the first.
+fn partners(of_source: &[Hole], of_target: &[Hole], near: f64) -> Vec<Option<usize>> {
+    let is_same_size = |hole: &Hole, other: &Hole| {
+        let ratio = other.radius / hole.radius;
+        ratio < SAME_RADIUS && ratio * SAME_RADIUS > 1.0
+    };
+    let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+    for (i, hole) in of_source.iter().enumerate() {
+        let alike = of_target.iter().enumerate();
+        let alike = alike.filter(|(_, other)| is_same_size(hole, other));
+        let off = alike.map(|(j, other)| ((other.center - hole.center).norm(), i, j));
+        pairs.extend(off.filter(|(off, ..)| *off < near.max(hole.radius)));
+    }
+    pairs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    let mut partners = vec![None; of_source.len()];
+    let mut is_used = vec![false; of_target.len()];
+    for (_, i, j) in pairs {
+        if partners[i].is_none() && !is_used[j] {
+            partners[i] = Some(j);
+            is_used[j] = true;
+        }
+    }
+    partners
 }
 
 /// Whether two holes cross each other, or lie about one middle, and are of one kind.

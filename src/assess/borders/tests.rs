@@ -74,6 +74,26 @@ fn a_hole_is_missed_by_no_shift() {
 }
 
 #[test]
+fn a_hole_keeps_the_one_that_it_lies_on_whichever_comes_first() {
+    let at = |x: f64| Hole {
+        center: Point3::new(x, 0.0, 0.0),
+        radius: 5.0,
+        length: 31.0,
+        normal: Vector3::z(),
+    };
+    // The first hole of the source lies beside the hole on which the second one lies.
+    assert_eq!(
+        partners(&[at(-2.0), at(0.0)], &[at(0.0)], 3.0),
+        [None, Some(0)]
+    );
+    let (source, target) = ([at(-2.0), at(0.0), at(2.0)], [at(2.0), at(-0.1)]);
+    assert_eq!(partners(&source, &target, 3.0), [None, Some(1), Some(0)]);
+    // The one that is left takes what is near enough, of two the first.
+    assert_eq!(partners(&[at(0.0)], &[at(2.0), at(-2.0)], 3.0), [Some(0)]);
+    assert_eq!(partners(&[at(0.0)], &[at(6.0)], 3.0), [None]);
+}
+
+#[test]
 fn holes_that_overlap_are_moved_or_resized_but_no_pilot_hole_is() {
     let hole = |x: f64, radius: f64| Hole {
         center: Point3::new(x, 0.0, 0.0),
