@@ -225,10 +225,11 @@ impl MatchSettings {
         counts.try_for_each(|(name, value)| within(name, value as f64, range.clone()))
     }
 
-    /// Takes another method with its own settings; start, rotation step, hand and tolerances stay.
+    /// Takes another method with its own settings; start, given poses, rotation step, hand and tolerances stay.
     pub fn set_method(&mut self, method: Method) {
         let mut new = Self::of(method);
         new.starts.method = self.starts.method;
+        new.starts.poses = std::mem::take(&mut self.starts.poses);
         new.starts.angle_segment_deg = self.starts.angle_segment_deg;
         new.hand = self.hand;
         new.allowance = self.allowance;
@@ -257,4 +258,22 @@ pub mod limits {
     pub const ANGLE_SEGMENT_DEG: RangeInclusive<f64> = 1.0..=60.0;
     /// Points and iterations.
     pub const COUNT: RangeInclusive<usize> = 1..=1_000_000_000;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Similarity;
+
+    #[test]
+    fn another_method_begins_at_the_same_poses() {
+        let mut settings = MatchSettings::default();
+        settings.starts.method = StartMethod::GivenPoses;
+        settings.starts.poses = vec![Similarity::mirror_x()];
+        settings.set_method(Method::Trimmed);
+        assert_eq!(settings.method, Method::Trimmed);
+        assert_eq!(settings.starts.method, StartMethod::GivenPoses);
+        assert_eq!(settings.starts.poses, [Similarity::mirror_x()]);
+        assert!(settings.check().is_ok());
+    }
 }
