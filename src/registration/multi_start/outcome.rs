@@ -110,9 +110,10 @@ fn alternatives(
     for (search, ranked) in ranked {
         let pose = ranked.target_from_source;
         let score_ratio = best.ratio_of(&ranked.scores);
-        let known =
-            is_same(&pose, result) || found.iter().any(|a| is_same(&a.target_from_source, &pose));
-        if known || score_ratio > WORTH_SHOWING {
+        let Some(score_ratio) = score_ratio.filter(|ratio| *ratio <= WORTH_SHOWING) else {
+            continue;
+        };
+        if is_same(&pose, result) || found.iter().any(|a| is_same(&a.target_from_source, &pose)) {
             continue;
         }
         let (_, candidates) = &searches[*search].choices[ranked.choice];

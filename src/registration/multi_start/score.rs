@@ -72,11 +72,14 @@ impl TwoSided {
         (self.source_on_target * self.target_on_source).sqrt()
     }
 
-    /// How much worse `other` is, by the direction that discriminates more. At least 1 for a worse score.
-    pub(crate) fn ratio_of(&self, other: &Self) -> f64 {
+    /// How much worse `other` is, whose score is no better, by the direction that discriminates more; at least 1.
+    /// `None` where that is no finite number.
+    pub(crate) fn ratio_of(&self, other: &Self) -> Option<f64> {
         let forward = other.source_on_target / self.source_on_target;
         let backward = other.target_on_source / self.target_on_source;
-        forward.max(backward)
+        // Where both find no pairs in one direction, the other one counts.
+        let ratio = forward.max(backward);
+        ratio.is_finite().then_some(ratio.max(1.0))
     }
 }
 
@@ -238,6 +241,23 @@ mod tests {
                 .extend(cells.flat_map(|a| [[a, a + n + 1, a + n + 2], [a, a + n + 2, a + 1]]));
         }
         Surface::new(&TriMesh::new(points, triangles).unwrap(), "source").unwrap()
+    }
+
+    #[test]
+    fn a_direction_without_pairs_makes_no_ratio() {
+        let score = |source_on_target, target_on_source| TwoSided {
+            source_on_target,
+            target_on_source,
+        };
+        let (nowhere, without) = (
+            score(f64::INFINITY, f64::INFINITY),
+            score(f64::INFINITY, 10.0),
+        );
+        assert_eq!(nowhere.ratio_of(&nowhere), None);
+        assert_eq!(score(1.0, 10.0).ratio_of(&without), None);
+        // Both are infinitely bad.
+        assert_eq!(without.ratio_of(&score(f64::INFINITY, 9.0)), Some(1.0));
+        assert_eq!(score(1.0, 2.0).ratio_of(&score(3.0, 1.0)), Some(3.0));
     }
 
     #[test]
