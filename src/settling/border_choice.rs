@@ -92,17 +92,7 @@ pub fn held_by_borders(
     let Some(result) = comparison.refined(found, Least::Facets)? else {
         return Ok(None);
     };
-    let tried = outcome
-        .starts
-        .iter()
-        .flat_map(|start| [start.first, start.last]);
-    let others: Vec<Similarity> = outcome
-        .alternatives
-        .iter()
-        .map(|other| other.target_from_source)
-        .chain(tried)
-        .take(MOST_POSES)
-        .collect();
+    let others = tried_poses(outcome);
     let roots = comparison.roots(&result, &others, &free);
     let mut poses = Vec::new();
     for (root, free) in &roots {
@@ -160,6 +150,20 @@ pub fn held_by_borders(
         target_from_source: pose.unwrap_or(winner.pose),
         alternatives,
     }))
+}
+
+/// Poses that the match tried, of the hand that it found: whoever settles a pose leaves the hand as it is.
+pub(super) fn tried_poses(outcome: &MatchOutcome) -> Vec<Similarity> {
+    let is_mirrored = outcome.target_from_source.is_mirrored();
+    let starts = outcome.starts.iter();
+    let tried = starts.flat_map(|start| [start.first, start.last]);
+    let alternatives = outcome.alternatives.iter();
+    alternatives
+        .map(|other| other.target_from_source)
+        .chain(tried)
+        .filter(|pose| pose.is_mirrored() == is_mirrored)
+        .take(MOST_POSES)
+        .collect()
 }
 
 /// The motion along which borders and holes are looked for: what the surfaces leave free, or hardly resist where the

@@ -75,6 +75,20 @@ pub fn placed_as_a_whole(
     Ok(best.map(|(winner, others)| ChosenPose::in_place_of(outcome, winner, others, source)))
 }
 
+/// The first poses of the match of the hand that it found, each once.
+fn first_poses(outcome: &MatchOutcome, part: &Extent) -> Vec<Similarity> {
+    let is_mirrored = outcome.target_from_source.is_mirrored();
+    let starts = outcome.starts.iter();
+    let mut firsts: Vec<Similarity> = Vec::new();
+    for start in starts.filter(|start| start.mirrored == is_mirrored) {
+        let is_known = |known: &Similarity| same_pose(known, &start.first, part);
+        if !firsts.iter().any(is_known) {
+            firsts.push(start.first);
+        }
+    }
+    firsts
+}
+
 /// The first poses of the match, each moved until what meets of the smaller part lies closest; those under which the
 /// parts lie closest as a whole come first.
 fn moved_as_a_whole(
@@ -85,15 +99,7 @@ fn moved_as_a_whole(
     let near = distances.first_border_reach;
     let search = context.contacts(1.0, near, N_NODES);
     let part: Extent = context.source.measures().into();
-    let mut firsts: Vec<Similarity> = Vec::new();
-    for start in &outcome.starts {
-        if !firsts
-            .iter()
-            .any(|known| same_pose(known, &start.first, &part))
-        {
-            firsts.push(start.first);
-        }
-    }
+    let firsts = first_poses(outcome, &part);
     let at_first = firsts.par_iter().map(|pose| {
         context.check()?;
         Ok((apart(&search, pose), *pose))
@@ -154,4 +160,61 @@ fn held_by_holes(
         let is_near = context.displacement(&next, &evidence.pose) <= farthest;
         is_near.then_some((next, still))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Point3, TriMesh, Vector3};
+    use crate::monitor::Monitor;
+    use crate::registration::{
+        MatchInput, MatchSettings, Method, StartRecord, Surface, match_surfaces,
+    };
+    use crate::settling::border_choice::tried_poses;
+    use crate::settling::chosen_pose::as_likely;
+
+    #[test]
+    fn poses_of_the_other_hand_are_not_tried() {
+        let points = [
+            [0.0, 0.0, 0.0],
+            [9.0, 0.0, 0.0],
+            [0.0, 7.0, 1.0],
+            [9.0, 8.0, 3.0],
+        ];
+        let mesh = TriMesh::new(
+            points.map(Point3::from).to_vec(),
+            vec![[0, 1, 3], [0, 3, 2]],
+        );
+        let part = Surface::new(&mesh.unwrap(), "source").unwrap();
+        let settings = MatchSettings::of(Method::Umeyama);
+        let input = MatchInput {
+            source: &part,
+            target: &part,
+            reduced: None,
+        };
+        let mut outcome = match_surfaces(&input, &settings, &Monitor::silent()).unwrap();
+        let moved = Similarity {
+            translation: Vector3::new(50.0, 0.0, 0.0),
+            ..Similarity::identity()
+        };
+        let own = outcome.starts[0].clone();
+        for (pose, mirrored) in [(moved, false), (Similarity::mirror_x(), true)] {
+            outcome.starts.push(StartRecord {
+                first: pose,
+                last: pose,
+                mirrored,
+                ..own.clone()
+            });
+            outcome.alternatives.push(as_likely(pose, &outcome));
+        }
+        let extent = part.measures().into();
+        let firsts = first_poses(&outcome, &extent);
+        assert_eq!(firsts.len(), 2);
+        let tried = tried_poses(&outcome);
+        assert_eq!(tried.len(), 5);
+        assert!(!firsts.iter().chain(&tried).any(Similarity::is_mirrored));
+        outcome.target_from_source = Similarity::mirror_x();
+        assert_eq!(first_poses(&outcome, &extent), [Similarity::mirror_x()]);
+        assert_eq!(tried_poses(&outcome), [Similarity::mirror_x(); 3]);
+    }
 }
