@@ -1,5 +1,7 @@
 //! What all steps are given: both parts, what they are compared by, and the request to cancel.
 
+use std::sync::OnceLock;
+
 use crate::assess::borders::BorderComparison;
 use crate::assess::contact::ContactSearch;
 use crate::assess::evidence::{EvidenceSearch, PoseEvidence};
@@ -18,6 +20,8 @@ pub struct PairContext<'a> {
     pub(super) monitor: &'a Monitor,
     /// Of the source's box.
     corners: [Point3; 8],
+    /// The poses under which holes lie on like ones, found when first asked for.
+    pub(super) on_holes: OnceLock<Vec<Similarity>>,
 }
 
 impl<'a> PairContext<'a> {
@@ -33,6 +37,7 @@ impl<'a> PairContext<'a> {
             settings,
             monitor,
             corners: source.mesh().aabb().corners(),
+            on_holes: OnceLock::new(),
         }
     }
 

@@ -68,8 +68,11 @@ pub(super) fn can_place(context: &PairContext<'_>, pose: &Similarity) -> bool {
 }
 
 /// The poses under which the most holes of the smaller part lie on like ones of the other; they are as exact as the
-/// middles of a few holes. O(holes² of both parts), bounded.
-fn poses(context: &PairContext<'_>) -> Result<Vec<Similarity>, Cancelled> {
+/// middles of a few holes. Looked for once. O(holes² of both parts), bounded.
+fn poses<'a>(context: &'a PairContext<'_>) -> Result<&'a [Similarity], Cancelled> {
+    if let Some(known) = context.on_holes.get() {
+        return Ok(known);
+    }
     let PairContext { source, target, .. } = *context;
     let is_source_smaller = is_source_smaller(source, target, 1.0);
     let [data, model] = if is_source_smaller {
@@ -77,16 +80,16 @@ fn poses(context: &PairContext<'_>) -> Result<Vec<Similarity>, Cancelled> {
     } else {
         [target, source]
     };
-    let Some(search) = WideSearch::new(data, model) else {
-        return Ok(Vec::new());
+    let mut found = match WideSearch::new(data, model) {
+        Some(search) => search.on_holes(context.monitor)?,
+        None => Vec::new(),
     };
-    let mut poses = search.on_holes(context.monitor)?;
     if !is_source_smaller {
-        for pose in &mut poses {
+        for pose in &mut found {
             *pose = pose.inverse();
         }
     }
-    Ok(poses)
+    Ok(context.on_holes.get_or_init(|| found))
 }
 
 /// Of these the poses that lie farther than `apart` from all known ones, which are more exact.
@@ -95,10 +98,9 @@ pub(super) fn poses_unlike(
     known: &[Similarity],
     apart: f64,
 ) -> Result<Vec<Similarity>, Cancelled> {
-    let mut found = poses(context)?;
-    found.retain(|pose| {
+    let is_unlike = |pose: &&Similarity| {
         let mut known = known.iter();
         known.all(|known| context.displacement(pose, known) > apart)
-    });
-    Ok(found)
+    };
+    Ok(poses(context)?.iter().filter(is_unlike).copied().collect())
 }

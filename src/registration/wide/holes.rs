@@ -9,6 +9,7 @@ use super::cloud::{Cloud, Motion32};
 use super::rounds::First;
 use super::seeds::{aligned, frame, matrix};
 use crate::geometry::{Matrix3, Point3, Rotation, Vector3};
+use crate::monitor::{Cancelled, Monitor};
 use crate::registration::surface::Surface;
 use crate::search::FeatureGrid;
 
@@ -41,6 +42,8 @@ const NEARLY_MOST: f64 = 0.85;
 const LEAST_FIRST: usize = 4;
 /// First poses at most: of a plate with hundreds of like holes they determine nothing.
 const MOST_FIRST: usize = 10_000;
+/// First poses whose holes are counted between two questions whether the search is cancelled.
+const CHUNK: usize = 256;
 
 /// A hole in grid units, of the data in the frame of its cloud.
 #[derive(Debug, Clone, Copy)]
@@ -56,6 +59,8 @@ struct Hole {
 pub(super) struct Holes {
     data: Vec<Hole>,
     model: Vec<Hole>,
+    /// The holes of the model along an axis, by their middles.
+    along: AlongAxis,
     alike: Alike,
 }
 
@@ -70,6 +75,7 @@ impl Holes {
         let edge = [data, model].map(|part| part.measures().mean_edge_length);
         Self {
             data: of_data,
+            along: AlongAxis::of(&of_model),
             model: of_model,
             alike: Alike {
                 edge: edge[0].max(edge[1]) * cloud.scale,
@@ -80,7 +86,7 @@ impl Holes {
 
     /// The first poses that they give under which nearly the most holes have their counterpart, in a fixed order; none
     /// where a part has no holes. O(holes of the data² · holes of the model²), both bounded.
-    pub(super) fn first_poses(&self) -> Vec<First> {
+    pub(super) fn first_poses(&self, monitor: &Monitor) -> Result<Vec<First>, Cancelled> {
         let mut found = Vec::new();
         let [data, model] = [(&self.data, MOST_HOLES[0]), (&self.model, MOST_HOLES[1])]
             .map(|(holes, most)| &holes[..holes.len().min(most)]);
@@ -88,8 +94,13 @@ impl Holes {
             [only] => self.alike.align_single(only, model, &mut found),
             _ => self.alike.align_pairs(data, model, &mut found),
         }
-        let counted = found.par_iter().map(|first| self.aligned(&first.motion).0);
-        let counts: Vec<usize> = counted.collect();
+        let counted = found.par_chunks(CHUNK).map(|chunk| {
+            monitor.check()?;
+            let counts = chunk.iter().map(|first| self.aligned(&first.motion).0);
+            Ok(counts.collect())
+        });
+        let counted: Result<Vec<Vec<usize>>, Cancelled> = counted.collect();
+        let counts = counted?.concat();
         let mut sorted = counts.clone();
         sorted.sort_unstable_by(|a, b| b.cmp(a));
         // Surfaces do not distinguish the places of a regular pattern: those that most holes support come alone.
@@ -98,7 +109,7 @@ impl Holes {
         let least = of_these.unwrap_or(0).max(nearly.ceil() as usize);
         let mut counts = counts.into_iter();
         found.retain(|_| counts.next().is_some_and(|n| n >= least));
-        found
+        Ok(found)
     }
 
     /// A motion of the data shifted so that its holes lie on their counterparts in the mean, and how many have one.
@@ -106,12 +117,18 @@ impl Holes {
         let (mut n, mut sum) = (0, Vector3::zeros());
         for hole in &self.data {
             let moved = motion.apply(&hole.center);
-            let off = |other: &Hole| other.center - moved;
-            let like = self.model.iter();
-            let like = like
-                .filter(|other| self.alike.are_as_large(hole, other))
-                .map(off);
-            let nearest = like.min_by(|a, b| a.norm().total_cmp(&b.norm()));
+            let off = |&i: &u32| self.model[i as usize].center - moved;
+            let near = self.along.within(&self.model, &moved, self.alike.near());
+            let like = near.iter().filter(|&&i| {
+                let other = &self.model[i as usize];
+                self.alike.are_as_large(hole, other)
+            });
+            // Of holes that lie equally close the first one.
+            let nearest = like.map(|i| (off(i), i)).min_by(|a, b| {
+                let closer = a.0.norm().total_cmp(&b.0.norm());
+                closer.then(a.1.cmp(b.1))
+            });
+            let nearest = nearest.map(|(off, _)| off);
             if let Some(off) = nearest.filter(|off| off.norm() <= self.alike.near()) {
                 n += 1;
                 sum += off;
@@ -119,6 +136,42 @@ impl Holes {
         }
         let shift = sum / n.max(1) as f64;
         (n, motion.shifted(&shift))
+    }
+}
+
+/// Holes in the order of their middles along the axis of the frame in which they extend farthest.
+struct AlongAxis {
+    axis: usize,
+    holes: Vec<u32>,
+}
+
+impl AlongAxis {
+    fn of(holes: &[Hole]) -> Self {
+        let extent = |axis: usize| {
+            let places = holes.iter().map(|hole| hole.center[axis]);
+            let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+                (low.min(x), high.max(x))
+            });
+            high - low
+        };
+        let axis = (0..3).max_by(|&a, &b| extent(a).total_cmp(&extent(b)));
+        let axis = axis.unwrap_or(0);
+        let at = |i: u32| holes[i as usize].center[axis];
+        let mut sorted: Vec<u32> = (0..holes.len() as u32).collect();
+        sorted.sort_by(|&a, &b| at(a).total_cmp(&at(b)));
+        Self {
+            axis,
+            holes: sorted,
+        }
+    }
+
+    /// The holes that lie no farther than `near` from a point along the axis, among which are all that lie no farther
+    /// from it.
+    fn within(&self, holes: &[Hole], point: &Vector3, near: f64) -> &[u32] {
+        let off = |&i: &u32| holes[i as usize].center[self.axis] - point[self.axis];
+        let first = self.holes.partition_point(|i| off(i) < -near);
+        let rest = &self.holes[first..];
+        &rest[..rest.partition_point(|i| off(i) <= near)]
     }
 }
 
@@ -282,5 +335,65 @@ impl Two {
             frame: Matrix3::from_columns(&columns),
             ..self
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Holes of two sizes in rows, some of them at one place.
+    fn rows(n: usize) -> Vec<Hole> {
+        let hole = |i: usize| Hole {
+            center: Vector3::new(0.1 * (i % 7) as f64, 0.05 * (i / 9) as f64, 0.0),
+            radius: if i.is_multiple_of(3) { 0.02 } else { 0.03 },
+            normal: Vector3::z(),
+        };
+        (0..n).map(hole).collect()
+    }
+
+    fn holes(n: usize) -> Holes {
+        let model = rows(n);
+        Holes {
+            data: rows(60),
+            along: AlongAxis::of(&model),
+            model,
+            alike: Alike {
+                edge: 0.01,
+                diagonal: 1.0,
+            },
+        }
+    }
+
+    #[test]
+    fn counterparts_are_those_among_all_holes() {
+        let holes = holes(200);
+        let near = holes.alike.near();
+        let mut n_beside = 0;
+        for i in 0..400 {
+            let at = Vector3::new(0.0017 * f64::from(i), 0.0029 * f64::from(i), 0.004);
+            let found = holes.along.within(&holes.model, &at, near);
+            let is_near = |&i: &u32| (holes.model[i as usize].center - at).norm() <= near;
+            let mut found: Vec<u32> = found.iter().copied().filter(is_near).collect();
+            found.sort_unstable();
+            let all: Vec<u32> = (0..200).filter(is_near).collect();
+            n_beside += all.len();
+            assert_eq!(found, all);
+        }
+        assert!(n_beside > 50, "{n_beside}");
+        assert!(
+            AlongAxis::of(&[])
+                .within(&[], &Vector3::zeros(), near)
+                .is_empty()
+        );
+    }
+
+    #[test]
+    fn the_search_for_first_poses_can_be_cancelled() {
+        let monitor = Monitor::silent();
+        let holes = holes(40);
+        assert!(!holes.first_poses(&monitor).unwrap().is_empty());
+        monitor.request_cancel();
+        assert!(holes.first_poses(&monitor).is_err());
     }
 }

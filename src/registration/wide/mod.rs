@@ -236,7 +236,7 @@ impl<'a> WideSearch<'a> {
     pub fn on_holes(&self, monitor: &Monitor) -> Result<Vec<Similarity>, Cancelled> {
         let holes = Holes::of(&self.cloud, (self.data, self.model), &self.grid);
         let ground = self.ground(&self.cloud);
-        let first = holes.first_poses().into_iter();
+        let first = holes.first_poses(monitor)?.into_iter();
         let survivors = rounds::run(ground, first, &HOLE_ROUNDS, monitor)?.into_iter();
         let moved = survivors.map(|candidate| holes.aligned(&candidate.motion));
         let mut moved: Vec<(usize, Motion32)> = moved.collect();
