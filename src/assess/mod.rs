@@ -71,6 +71,7 @@ pub fn assess(
     let coverage = coverage(source, target, pose, limit, monitor)?;
     monitor.progress("verify", 1, Some(2));
     let freedom = free_motions(source, target, pose, limit);
+    monitor.check()?;
     let mut ambiguity = Ambiguity::of(&outcome.alternatives);
     if ambiguity.clarity != Clarity::Clear {
         let other = outcome.alternatives.first();
@@ -80,6 +81,7 @@ pub fn assess(
         noise, tolerance, ..
     } = Distances::of(source, target, pose.scale, settings);
     let Statements { uncertainty, shape } = statements([source, target], pose, settings);
+    monitor.check()?;
     let mut assessment = Assessment {
         verdict: Verdict::Good,
         reasons: Vec::new(),
@@ -99,6 +101,7 @@ pub fn assess(
     // The ends of the part lie half a diagonal from its middle.
     let most_scaled = tolerance.springback / (0.5 * target.measures().diagonal);
     let mirrored = mirrored_statement([source, target], outcome, settings);
+    monitor.check()?;
     let grounds = Grounds {
         outcome,
         shape: &shape,
@@ -109,7 +112,6 @@ pub fn assess(
     decide(&mut assessment, &grounds);
     let is_comparable = !assessment.reasons.iter().any(Reason::is_of_units);
     assessment.shape = is_comparable.then_some(shape);
-    monitor.check()?;
     monitor.progress("verify", 2, Some(2));
     Ok(assessment)
 }

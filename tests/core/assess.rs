@@ -1,8 +1,11 @@
 //! The assessment of poses: free motions, coverage, ambiguity, verdict.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use shapematch::assess::*;
 use shapematch::geometry::{Point3, Pose, Similarity, TriMesh, Vector3};
-use shapematch::monitor::Monitor;
+use shapematch::monitor::{Monitor, Observer, Progress};
 use shapematch::registration::*;
 use shapematch::samples::disturb;
 use shapematch::settling::*;
@@ -119,6 +122,36 @@ fn a_right_pose_is_good_and_covers_everything() {
     assert_eq!(assessed.verdict, Verdict::Good, "{:?}", assessed.reasons);
     assert!(assessed.coverage.source_on_target.overlap > 0.98);
     assert!(assessed.coverage.target_on_source.overlap > 0.98);
+}
+
+/// Counts how often the work looks whether it is to end, once it has said that half of it is done.
+#[derive(Default)]
+struct AskedSince(AtomicUsize);
+
+impl Observer for AskedSince {
+    fn progress(&self, progress: Progress) {
+        if progress.done == 1 {
+            self.0.store(0, Ordering::Relaxed);
+        }
+    }
+
+    fn asked(&self) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+    }
+}
+
+#[test]
+fn every_step_of_an_assessment_can_be_cancelled() {
+    let part = Surface::new(&pan(9.0, 0.0, everywhere), "source").unwrap();
+    let outcome = matched(&part, &part);
+    let observer = Arc::new(AskedSince::default());
+    let monitor = Monitor::with_observer(observer.clone());
+    let settings = AssessSettings::default();
+    assess(&part, &part, &outcome, &settings, &monitor).unwrap();
+    // After the free motions, the statements, and that of the opposite hand.
+    assert_eq!(observer.0.load(Ordering::Relaxed), 3);
+    monitor.request_cancel();
+    assert!(assess(&part, &part, &outcome, &settings, &monitor).is_err());
 }
 
 #[test]

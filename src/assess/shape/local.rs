@@ -1,6 +1,8 @@
 //! Does one part have a bead, an emboss or a dent that the other lacks? It may be too small to show in the figures of
 //! most of the area.
 
+use std::cell::LazyCell;
+
 use crate::assess::contact::Contact;
 use crate::assess::evidence::PoseEvidence;
 use crate::assess::fit::Fit;
@@ -8,6 +10,7 @@ use crate::assess::shape::ShapeReason;
 use crate::assess::tolerance::{ShapeTolerance, is_source_smaller};
 use crate::geometry::{Point3, Vector3};
 use crate::registration::Surface;
+use crate::search::PointTree;
 
 /// Places that lie beside each other and differ by as much are no noise from this number on.
 const LEAST_PLACES: usize = 5;
@@ -54,8 +57,8 @@ struct Group<'a, 'b> {
 /// The largest group of neighbouring places at which what neither bends nor facets explain exceeds the tolerance to
 /// one side, at an end that of springback, and which elements cutting short does not explain either. A piece that lies
 /// too far from its counterpart to meet it counts too.
-/// O(nodes that meet nothing · log triangles + k² + k · outlines) for k places beyond the limit, and O(nodes of the
-/// larger part) where a group is narrow.
+/// O(nodes that meet nothing · log triangles + k² + (k + outlines) · log outlines) for k places beyond the limit, and
+/// O(nodes of the larger part) where a group is narrow.
 pub(super) fn local_difference(
     evidence: &PoseEvidence<'_>,
     fit: &Fit,
@@ -83,7 +86,7 @@ pub(super) fn local_difference(
     if beyond.len() < LEAST_PLACES {
         return None;
     }
-    let outlines = outlines(evidence);
+    let outlines = LazyCell::new(|| PointTree::build(outlines(evidence)));
     let groups = groups(&beyond).into_iter();
     let groups = groups.filter(|group| group.places.len() >= LEAST_PLACES);
     let found = groups.filter_map(|group| {
@@ -184,11 +187,11 @@ impl<'a, 'b> Group<'a, 'b> {
     }
 
     /// Whether it is an end of a part rather than a place in the middle or a bead that runs out at an outline.
-    fn is_end(&self, outlines: &[Point3]) -> bool {
+    fn is_end(&self, outlines: &PointTree) -> bool {
         let (mut along, mut inward) = (0.0_f64, 0.0_f64);
         for place in &self.places {
-            let to = |at: &Point3| (at - place.contact.point).norm_squared();
-            let distance = outlines.iter().map(to).fold(f64::INFINITY, f64::min).sqrt();
+            let nearest = outlines.nearest(&place.contact.point, f64::INFINITY, None);
+            let distance = nearest.map_or(f64::INFINITY, |nearest| nearest.distance_sq.sqrt());
             if distance <= place.size {
                 along += place.size;
             }
