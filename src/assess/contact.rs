@@ -11,7 +11,7 @@ use super::scaled::Scaled;
 use super::small_motion::{self, Six, turn_and_shift};
 use super::tolerance::is_source_smaller;
 use crate::geometry::{Point3, Rotation, Similarity, Vector3};
-use crate::registration::Surface;
+use crate::registration::{Motion, Surface, fit_pairs};
 use crate::search::{ClosestPoint, SurfaceHit};
 
 /// Nodes of the smaller part that are looked at; more change no figure by a percent.
@@ -137,6 +137,21 @@ impl<'a> ContactSearch<'a> {
         });
         let areas = sides.data.vertex_areas().iter().step_by(stride);
         Contacts::of(list, unmet, areas.sum(), stride as f64)
+    }
+
+    /// The scale that would fit the source best to the places of the target that it meets under a pose, times that of
+    /// the pose; `None` where they do not meet. O(nodes · log triangles).
+    pub(crate) fn best_scale(&mut self, pose: &Similarity) -> Option<f64> {
+        let list = self.at(pose)?.list;
+        let beside = |contact: &Contact| {
+            let side = if self.of_source { -1.0 } else { 1.0 };
+            contact.point + contact.normal * (side * contact.gap)
+        };
+        let others: Vec<Point3> = list.iter().map(beside).collect();
+        let pairs = list.iter().zip(&others);
+        let pairs = pairs.map(|(contact, other)| (&contact.point, other, contact.weight));
+        let scale = fit_pairs(pairs, Motion::Rigid).ok()?.scale;
+        Some(pose.scale * if self.of_source { scale } else { 1.0 / scale })
     }
 
     /// Where nodes of the larger part meet the smaller one under a pose: those that lie where `is_asked` says.

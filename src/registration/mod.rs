@@ -25,6 +25,7 @@ mod surface;
 mod wide;
 
 pub use agreement::{Extent, StartGroup, group_starts, same_pose};
+pub(crate) use closed_form::fit_pairs;
 pub use closed_form::{Motion, PairFit, umeyama};
 pub use error::RegistrationError;
 pub use icp::{Floor, Metric, PairWith, RejectRules, Selection, Stage, Termination};

@@ -34,8 +34,10 @@ pub use remove_offset::without_offset;
 pub use remove_trims::without_trims;
 
 use crate::assess::AssessSettings;
+use crate::assess::contact::MAX_NODES;
+use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
-use crate::registration::{MatchOutcome, MatchSettings, Method, Surface, Termination};
+use crate::registration::{MatchOutcome, MatchSettings, Method, Surface, Termination, same_pose};
 use chosen_pose::as_likely;
 
 /// Chooses and moves the pose of `outcome`, of source and target. `check` is what it will be assessed by. Nothing
@@ -52,6 +54,7 @@ pub fn settle(
         return Ok(());
     }
     let context = PairContext::new(surfaces, check, monitor);
+    let found = outcome.target_from_source;
     choose_pairs(&context, outcome)?;
     hold(&context, outcome)?;
     let chosen = chosen_by_shape(&context, outcome)?;
@@ -73,7 +76,7 @@ pub fn settle(
     {
         outcome.target_from_source = pose;
     }
-    Ok(())
+    measure_scale(&context, outcome, &found)
 }
 
 /// The pose of the closest pairs, or of all of them.
@@ -119,9 +122,76 @@ fn remove_bend(context: &PairContext<'_>, outcome: &mut MatchOutcome) -> Result<
     Ok(())
 }
 
+/// Where another pose took the place of the one that the match found, whose pairs say nothing about it, the scale is
+/// that of the places where the parts meet.
+fn measure_scale(
+    context: &PairContext<'_>,
+    outcome: &mut MatchOutcome,
+    found: &Similarity,
+) -> Result<(), Cancelled> {
+    let pose = outcome.target_from_source;
+    if same_pose(found, &pose, &context.source.measures().into()) {
+        return Ok(());
+    }
+    context.check()?;
+    let reach = context.distances(pose.scale).reach;
+    let mut contacts = context.contacts(pose.scale, reach, MAX_NODES);
+    outcome.scale_check.pair_scale = contacts.best_scale(&pose).unwrap_or(pose.scale);
+    Ok(())
+}
+
 /// Another pose becomes the result where a step chose one.
 fn take(outcome: &mut MatchOutcome, chosen: Option<ChosenPose>) {
     if let Some(chosen) = chosen {
         chosen.taken_by(outcome);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Point3, TriMesh, Vector3};
+    use crate::registration::{MatchInput, match_surfaces};
+
+    /// A piece of a sphere about the origin.
+    fn cap(radius: f64) -> Surface {
+        let n = 30_u32;
+        let place = |i: u32| f64::from(i) / f64::from(n) - 0.5;
+        let points = (0..(n + 1) * (n + 1)).map(|k| {
+            let at = Vector3::new(place(k % (n + 1)), place(k / (n + 1)), 0.4);
+            Point3::from(at.normalize() * radius)
+        });
+        let cells = (0..n * n).map(|k| k / n * (n + 1) + k % n);
+        let up = n + 1;
+        let triangles = cells.flat_map(|a| [[a, a + 1, a + up + 1], [a, a + up + 1, a + up]]);
+        let mesh = TriMesh::new(points.collect(), triangles.collect()).unwrap();
+        Surface::new(&mesh, "source").unwrap()
+    }
+
+    #[test]
+    fn the_scale_of_the_pairs_is_that_under_the_pose_that_was_chosen() {
+        let (small, large) = (cap(100.0), cap(100.5));
+        let (check, monitor) = (AssessSettings::default(), Monitor::silent());
+        for (source, target, scale) in [(&small, &large, 1.005), (&large, &small, 1.0 / 1.005)] {
+            let context = PairContext::new([source, target], &check, &monitor);
+            let input = MatchInput {
+                source,
+                target,
+                reduced: None,
+            };
+            let settings = MatchSettings::of(Method::Umeyama);
+            let mut outcome = match_surfaces(&input, &settings, &monitor).unwrap();
+            outcome.target_from_source = Similarity::identity();
+            outcome.scale_check.pair_scale = 1.3;
+            // A pose that was only moved keeps what its pairs said.
+            let mut found = Similarity::identity();
+            found.translation.x = 0.5;
+            measure_scale(&context, &mut outcome, &found).unwrap();
+            assert_eq!(outcome.scale_check.pair_scale, 1.3);
+            found.translation.x = 50.0;
+            measure_scale(&context, &mut outcome, &found).unwrap();
+            let measured = outcome.scale_check.pair_scale;
+            assert!((measured - scale).abs() < 5e-4, "{measured}");
+        }
     }
 }
