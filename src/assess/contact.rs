@@ -361,19 +361,21 @@ impl Contacts {
     }
 
     /// The places cut by repeated halving at the median into `1 << levels` patches; for each place
-    /// its patch. Fewer patches where there are few places.
+    /// its patch, counted from 0. Fewer patches where there are few places, none without any.
     pub(super) fn patches(&self, levels: u32) -> Vec<usize> {
         let mut patch = vec![0; self.list.len()];
         let mut all: Vec<usize> = (0..self.list.len()).collect();
-        self.halve(&mut all, levels, 0, &mut patch);
+        self.halve(&mut all, levels, &mut 0, &mut patch);
         patch
     }
 
-    fn halve(&self, places: &mut [usize], levels: u32, number: usize, patch: &mut [usize]) {
+    /// Patches are numbered on from `next`.
+    fn halve(&self, places: &mut [usize], levels: u32, next: &mut usize, patch: &mut [usize]) {
         if levels == 0 || places.len() < 2 {
             for &place in places.iter() {
-                patch[place] = number;
+                patch[place] = *next;
             }
+            *next += usize::from(!places.is_empty());
             return;
         }
         let at = |place: usize| &self.list[place].point;
@@ -389,8 +391,8 @@ impl Contacts {
         let axis = longest.unwrap_or(0);
         places.sort_unstable_by(|&a, &b| at(a)[axis].total_cmp(&at(b)[axis]).then(a.cmp(&b)));
         let (low, high) = places.split_at_mut(places.len() / 2);
-        self.halve(low, levels - 1, 2 * number, patch);
-        self.halve(high, levels - 1, 2 * number + 1, patch);
+        self.halve(low, levels - 1, next, patch);
+        self.halve(high, levels - 1, next, patch);
     }
 }
 
@@ -414,4 +416,30 @@ fn facet_error(model: &Surface, triangle: usize, normal: &Vector3) -> f64 {
         .chain([normal])
         .map(|n| facet.dot(n).abs());
     longest * cos.fold(1.0, f64::min).acos() / 4.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patches_of_a_few_places_have_numbers_of_their_own() {
+        let contacts = |n: usize| {
+            let list = (0..n).map(|i| Contact {
+                point: Point3::new(i as f64, 0.0, 0.0),
+                normal: Vector3::z(),
+                gap: 0.0,
+                weight: 1.0,
+                facet: 0.0,
+            });
+            Contacts::of(list.collect(), Vec::new(), n as f64, 1.0).unwrap()
+        };
+        let n_patches = [(3, 3), (5, 5), (9, 9), (16, 16), (17, 16), (40, 16)];
+        for (n, expected) in n_patches {
+            let mut patches = contacts(n).patches(4);
+            assert!(patches.is_sorted(), "{patches:?}");
+            patches.dedup();
+            assert_eq!(patches, (0..expected).collect::<Vec<_>>(), "{n}");
+        }
+    }
 }
