@@ -47,32 +47,23 @@ struct Moments {
 /// 1991), by Horn's quaternion matrix (Horn 1987), which gives a rotation for flat point sets too
 /// and the best mirrored fit at no cost.
 ///
-/// `weights` (non-negative, one per pair) default to 1. Pairs with a coordinate that is not finite
-/// are left out. Fewer than three pairs, coinciding and collinear points are errors, because
-/// there the rotation is not unique. O(n), two passes in index order.
+/// All pairs count the same; those with a coordinate that is not finite are left out. Fewer than
+/// three pairs, coinciding and collinear points are errors, because there the rotation is not
+/// unique. O(n), two passes in index order.
 pub fn umeyama(
     source: &[Point3],
     target: &[Point3],
-    weights: Option<&[f64]>,
     motion: Motion,
 ) -> Result<PairFit, RegistrationError> {
-    if source.len() != target.len() || weights.is_some_and(|w| w.len() != source.len()) {
+    if source.len() != target.len() {
         return Err(RegistrationError::UnequalCounts {
             n_source: source.len(),
             n_target: target.len(),
         });
     }
-    let pairs = source
-        .iter()
-        .zip(target)
-        .enumerate()
-        .filter_map(|(i, (x, y))| {
-            let weight = weights.map_or(1.0, |w| w[i]);
-            let usable = weight > 0.0
-                && weight.is_finite()
-                && x.iter().chain(y.iter()).all(|value| value.is_finite());
-            usable.then_some((x, y, weight))
-        });
+    let pairs = source.iter().zip(target);
+    let is_finite = |(x, y): &(&Point3, &Point3)| x.iter().chain(y.iter()).all(|v| v.is_finite());
+    let pairs = pairs.filter(is_finite).map(|(x, y)| (x, y, 1.0));
     fit_pairs(pairs, motion)
 }
 

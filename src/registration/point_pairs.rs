@@ -64,7 +64,7 @@ pub fn fit_point_pairs(
     source: &[Point3],
     target: &[Point3],
 ) -> Result<PointPairFit, RegistrationError> {
-    let fit = umeyama(source, target, None, Motion::Rigid)?;
+    let fit = umeyama(source, target, Motion::Rigid)?;
     let distance = |(x, y): (&Point3, &Point3)| (fit.target_from_source.apply(x) - y).norm();
     let residuals = source.iter().zip(target).map(distance).collect();
     let noise = NEGLIGIBLE * spread(target);
@@ -104,7 +104,7 @@ fn exchanged(
         for b in a + 1..target.len() {
             let mut trial = target.to_vec();
             trial.swap(a, b);
-            let Ok(fit) = umeyama(source, &trial, None, Motion::Rigid) else {
+            let Ok(fit) = umeyama(source, &trial, Motion::Rigid) else {
                 continue;
             };
             if best.is_none_or(|(_, rmse)| fit.rmse < rmse) {
@@ -127,7 +127,7 @@ fn far(source: &[Point3], target: &[Point3], noise: f64) -> Option<PairDoubt> {
             rest.remove(pair);
             rest
         };
-        let fit = umeyama(&keep(source), &keep(target), None, Motion::Rigid).ok()?;
+        let fit = umeyama(&keep(source), &keep(target), Motion::Rigid).ok()?;
         let off = (fit.target_from_source.apply(&source[pair]) - target[pair]).norm();
         Some((pair, off, fit.rmse))
     };

@@ -21,7 +21,7 @@ pub(super) fn match_same_nodes(
     let begin = Instant::now();
     let source = input.source.nodes_as_given();
     let target = input.target.nodes_as_given();
-    let fit = umeyama(&source, &target, None, settings.motion)?;
+    let fit = umeyama(&source, &target, settings.motion)?;
     let mirrored = match settings.hand {
         Hand::Same => false,
         Hand::Mirrored => true,

@@ -22,7 +22,7 @@ mod wide;
 
 pub use brute::BruteForce;
 pub use bvh::Bvh;
-pub use distance::{SearchLimits, closest_many};
+pub use distance::closest_many;
 pub use feature_grid::{FeatureGrid, GridFeature, GridSettings};
 pub use nearby::Nearby;
 pub use points::{NearestPoint, PointTree};

@@ -304,7 +304,7 @@ fn umeyama_agrees_with_singular_values() {
     for seed in 0..20 {
         let truth = placement(seed);
         let target: Vec<Point3> = noisy(&part, 3.0).transformed(&truth).positions().to_vec();
-        let fit = umeyama(&source, &target, None, Motion::Rigid).unwrap();
+        let fit = umeyama(&source, &target, Motion::Rigid).unwrap();
         let other = by_singular_values(&source, &target);
         assert!((fit.target_from_source.rotation - other).amax() < 1e-10);
         let moved = source.iter().map(|p| fit.target_from_source.apply(p));
@@ -324,7 +324,7 @@ fn umeyama_on_flat_mirrored_and_degenerate_points() {
     for seed in 0..50 {
         let truth = placement(seed);
         let target: Vec<Point3> = flat.iter().map(|p| truth.apply(p)).collect();
-        let fit = umeyama(&flat, &target, None, Motion::Rigid).unwrap();
+        let fit = umeyama(&flat, &target, Motion::Rigid).unwrap();
         assert!(fit.target_from_source.rotation.determinant() > 0.99);
         assert!(truth.max_displacement(&fit.target_from_source, &flat) < 1e-9);
         // Flat points cannot tell left from right.
@@ -333,23 +333,33 @@ fn umeyama_on_flat_mirrored_and_degenerate_points() {
     let solid = pan(40.0, 0.0, everywhere).positions().to_vec();
     let mirror = placement(4).after(&Similarity::mirror_x());
     let target: Vec<Point3> = solid.iter().map(|p| mirror.apply(p)).collect();
-    let fit = umeyama(&solid, &target, None, Motion::Rigid).unwrap();
+    let fit = umeyama(&solid, &target, Motion::Rigid).unwrap();
     assert!(mirror.max_displacement(&fit.mirrored, &solid) < 1e-9);
     assert!(fit.mirrored_rmse < 1e-4 && fit.rmse > 1.0);
 
     let line: Vec<Point3> = (0..9)
         .map(|i| Point3::new(f64::from(i), 2.0 * f64::from(i), 1.0))
         .collect();
-    let fit = |x: &[Point3]| umeyama(x, x, None, Motion::Rigid);
+    let fit = |x: &[Point3]| umeyama(x, x, Motion::Rigid);
     assert_eq!(fit(&line), Err(RegistrationError::CollinearPoints));
     assert_eq!(fit(&[line[3]; 5]), Err(RegistrationError::CoincidentPoints));
     assert_eq!(
         fit(&line[..2]),
         Err(RegistrationError::TooFewPairs { n_pairs: 2 })
     );
-    let weights = [1.0, 1.0, 0.0, f64::NAN, -1.0];
-    let few = umeyama(&solid[..5], &solid[..5], Some(&weights), Motion::Rigid);
+    let mut holed = solid[..5].to_vec();
+    for point in &mut holed[2..] {
+        point.y = f64::NAN;
+    }
+    let few = umeyama(&holed, &solid[..5], Motion::Rigid);
     assert_eq!(few, Err(RegistrationError::TooFewPairs { n_pairs: 2 }));
+    assert_eq!(
+        umeyama(&solid[..5], &solid[..4], Motion::Rigid),
+        Err(RegistrationError::UnequalCounts {
+            n_source: 5,
+            n_target: 4
+        })
+    );
 }
 
 #[test]

@@ -5,9 +5,7 @@ use std::sync::Arc;
 use proptest::prelude::*;
 use shapematch::geometry::{Point3, TriMesh, Vector3};
 use shapematch::monitor::Monitor;
-use shapematch::search::{
-    BruteForce, Bvh, ClosestPoint, NormalFilter, PointTree, SearchLimits, closest_many,
-};
+use shapematch::search::{BruteForce, Bvh, ClosestPoint, NormalFilter, PointTree, closest_many};
 
 /// A number in −1 … 1 that depends on seed and index alone (splitmix64).
 fn noise(seed: u64, i: u64) -> f64 {
@@ -273,23 +271,15 @@ fn rays_meet_what_a_plain_loop_meets() {
 fn many_at_once_are_the_same_as_one_by_one() {
     let shape = sheet(16);
     let points = queries(&shape, 8, 3000);
-    let directions: Vec<Vector3> = (0..3000).map(|i| vector(9, i).normalize()).collect();
     let tree = Bvh::build(shape);
-    let limits = SearchLimits {
-        max_distance: 20.0,
-        min_cos: Some(0.3),
-    };
     let silent = Monitor::silent();
-    let found = closest_many(&tree, &points, &directions, &[], limits, &silent).unwrap();
-    for ((point, &direction), found) in points.iter().zip(&directions).zip(&found) {
-        let filter = NormalFilter {
-            direction,
-            min_cos: 0.3,
-        };
-        assert_eq!(&tree.closest(point, 20.0, None, Some(&filter)), found);
+    let found = closest_many(&tree, &points, 20.0, &silent).unwrap();
+    assert_eq!(found.len(), points.len());
+    for (point, found) in points.iter().zip(&found) {
+        assert_eq!(&tree.closest(point, 20.0, None, None), found);
     }
     silent.request_cancel();
-    assert!(closest_many(&tree, &points, &directions, &[], limits, &silent).is_err());
+    assert!(closest_many(&tree, &points, 20.0, &silent).is_err());
 }
 
 proptest! {

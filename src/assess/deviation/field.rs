@@ -6,7 +6,7 @@ use crate::geometry::chunks::{for_chunks, map_chunks};
 use crate::geometry::{Similarity, Topology, Vector3};
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::Surface;
-use crate::search::{Feature, SearchLimits, SurfaceHit, closest_many};
+use crate::search::{Feature, SurfaceHit, closest_many};
 
 /// A place of a part seen from the other one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -137,11 +137,8 @@ impl Way<'_> {
         let queries = map_chunks(positions.len(), monitor, |vertex| {
             model_from_data.apply(&positions[vertex])
         })?;
-        let limits = SearchLimits {
-            max_distance: reach / self.world_from_model.scale,
-            min_cos: None,
-        };
-        let hits = closest_many(self.model.bvh(), &queries, &[], &[], limits, monitor)?;
+        let within = reach / self.world_from_model.scale;
+        let hits = closest_many(self.model.bvh(), &queries, within, monitor)?;
         let found = map_chunks(hits.len(), monitor, |vertex| match &hits[vertex] {
             Some(hit) => self.judge(vertex, hit, limit),
             None => Judged::NOTHING,

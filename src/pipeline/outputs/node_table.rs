@@ -15,7 +15,7 @@ use crate::registration::Surface;
 use crate::report::csv::{NodeDeviation, add_deviations, deviation_head};
 use crate::report::{DIRECTION, build_id};
 use crate::role::{PerRole, Role};
-use crate::search::{SearchLimits, SurfaceHit, closest_many};
+use crate::search::{SurfaceHit, closest_many};
 
 /// Measures both directions: first the nodes of the stamped part, then those of the crash part, in
 /// the order of their files. `uncertainty` is that of the pose, where it is known. O(n · log n) in the
@@ -69,18 +69,7 @@ fn nearest(
 ) -> Result<Vec<Option<SurfaceHit>>, PipelineError> {
     let moved = |point: &Point3| other_from_own.apply(point);
     let queries: Vec<Point3> = own.mesh.positions().iter().map(moved).collect();
-    let limits = SearchLimits {
-        max_distance: f64::INFINITY,
-        min_cos: None,
-    };
-    Ok(closest_many(
-        other.bvh(),
-        &queries,
-        &[],
-        &[],
-        limits,
-        monitor,
-    )?)
+    Ok(closest_many(other.bvh(), &queries, f64::INFINITY, monitor)?)
 }
 
 /// The table as text, with what its numbers mean at its head.

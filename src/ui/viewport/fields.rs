@@ -17,7 +17,7 @@ use crate::pipeline::forming_values::{FormingValue, forming_values, has_forming_
 use crate::pipeline::map::{MapRun, OtherResult, ShownValue};
 use crate::render::FieldLook;
 use crate::role::{PerRole, Role};
-use crate::search::{Bvh, SearchLimits, closest_many};
+use crate::search::{Bvh, closest_many};
 use crate::ui::background::{Background, Task};
 pub(super) use summary::Summary;
 use summary::{robust_range, without_rounding};
@@ -503,11 +503,7 @@ fn uncertainties(assessment: &Assessment, points: &[Point3], pose: &Similarity) 
 
 /// Distances of points from a surface.
 fn distances(tree: &Bvh, points: &[Point3]) -> Vec<f32> {
-    let limits = SearchLimits {
-        max_distance: f64::INFINITY,
-        min_cos: None,
-    };
-    let found = closest_many(tree, points, &[], &[], limits, &Monitor::silent());
+    let found = closest_many(tree, points, f64::INFINITY, &Monitor::silent());
     // A silent monitor is never cancelled.
     let found = found.unwrap_or_default().into_iter();
     let distance = |hit: Option<crate::search::SurfaceHit>| {
