@@ -136,10 +136,6 @@ pub struct Alternative {
 /// How well the opposite hand fits.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MirrorCheck {
-    /// Root mean square distance of the final pairs under the best mirrored motion; compare with
-    /// the outcome's `rmse`. Equal for a flat part, which has no hand.
-    #[serde(with = "any_float")]
-    pub mirrored_rmse: f64,
     /// Score of the opposite hand relative to the result's: below 1 it fits better. From the mirror
     /// images of the result, or from a search of its own where the result was not certain. `None`
     /// where both hands competed anyway, or the match was stopped.
@@ -171,25 +167,10 @@ pub struct MatchOutcome {
     pub target_from_source: Similarity,
     /// Why the last stage ended.
     pub termination: Termination,
-    /// Root mean square distance of the kept pairs, in target length units.
-    #[serde(with = "any_float")]
-    pub rmse: f64,
-    /// Distance that 95 % of the kept pairs stay below.
-    #[serde(with = "any_float")]
-    pub p95: f64,
-    /// Largest distance of a kept pair.
-    #[serde(with = "any_float")]
-    pub max: f64,
-    /// Kept share of the data mesh's area.
-    #[serde(with = "any_float")]
-    pub fraction: f64,
     /// Which mesh supplied the points.
     pub data_side: Side,
     /// True if the source's normals point to the other side of the sheet than the target's.
     pub normals_opposed: bool,
-    /// Objective at the end, in length units.
-    #[serde(with = "any_float")]
-    pub objective: f64,
     /// The floor σ0 of the last stage.
     #[serde(with = "any_float")]
     pub floor: f64,

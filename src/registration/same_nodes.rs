@@ -38,21 +38,15 @@ pub(super) fn match_same_nodes(
         .map(|(x, y)| (target_from_source.apply(x) - y).norm())
         .collect();
     distances.sort_by(f64::total_cmp);
-    let max = distances.last().copied().unwrap_or(0.0);
     let p95 = distances
         .get(distances.len() * 95 / 100)
         .copied()
-        .unwrap_or(max);
+        .unwrap_or(0.0);
     Ok(MatchOutcome {
         target_from_source,
         termination: Termination::ClosedForm,
-        rmse,
-        p95,
-        max,
-        fraction: 1.0,
         data_side: Side::Source,
         normals_opposed: opposed(input, &target_from_source),
-        objective: rmse,
         floor: 0.0,
         alternatives: Vec::new(),
         with_all_pairs: None,
@@ -74,7 +68,6 @@ pub(super) fn match_same_nodes(
         }],
         scale_check: ScaleCheck::new(input.source, input.target, fit.scale),
         mirror_check: MirrorCheck {
-            mirrored_rmse: fit.mirrored_rmse,
             score_ratio: None,
             target_from_source: None,
         },

@@ -133,23 +133,18 @@ impl Run {
         Some(self.records[before].objective - self.score)
     }
 
-    /// How far the kept pairs lie apart. Infinite before the first iteration.
-    pub(crate) fn spread(&self) -> Spread {
+    /// Distance below which 95 % of the kept pairs lie, by weight. Infinite before the first iteration.
+    pub(crate) fn p95(&self) -> f64 {
         let total: f64 = self.kept_pairs().map(|pair| pair.weight).sum();
-        let mut weight = 0.0;
-        let mut p95 = None;
-        let mut max = f64::INFINITY;
+        let (mut weight, mut distance) = (0.0, f64::INFINITY);
         for pair in self.kept_pairs() {
             weight += pair.weight;
-            max = pair.distance_sq.sqrt();
-            if p95.is_none() && weight >= 0.95 * total {
-                p95 = Some(max);
+            distance = pair.distance_sq.sqrt();
+            if weight >= 0.95 * total {
+                break;
             }
         }
-        Spread {
-            p95: p95.unwrap_or(max),
-            max,
-        }
+        distance
     }
 
     /// Distance that a share of all points of the last iteration, by weight, does not exceed; infinite
@@ -182,15 +177,6 @@ impl Run {
     pub(crate) fn kept_pairs(&self) -> impl Iterator<Item = &Correspondence> + Clone {
         self.kept.iter().map(|&i| &self.pairs[i as usize])
     }
-}
-
-/// Distances of the kept pairs of a run.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Spread {
-    /// Distance below which 95 % of them lie, by weight.
-    pub(crate) p95: f64,
-    /// Largest distance of a kept pair.
-    pub(crate) max: f64,
 }
 
 /// Where poses of a run lie in the caller's frames.

@@ -16,7 +16,7 @@ mod termination;
 
 pub use correspondence::PairWith;
 pub(super) use correspondence::{Correspondence, MatchRules, Sample, correspond};
-pub(super) use iterate::{Data, Frames, Run, Spread, StageInput, advance, orthonormal};
+pub(super) use iterate::{Data, Frames, Run, StageInput, advance, orthonormal};
 pub use metric::Metric;
 pub use reject::RejectRules;
 pub use select::{Floor, Selection};

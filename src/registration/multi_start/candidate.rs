@@ -174,7 +174,7 @@ impl Candidate {
             first: self.first,
             last: choice.frames.target_from_source(&self.run.model_from_data),
             score: self.run.score,
-            p95: self.run.spread().p95,
+            p95: self.run.p95(),
             took: self.run.took,
             termination: self.run.termination,
             outcome: self.outcome,

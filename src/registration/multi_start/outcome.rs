@@ -7,7 +7,7 @@ use crate::geometry::Similarity;
 use crate::registration::RegistrationError;
 use crate::registration::agreement::same_pose;
 use crate::registration::closed_form::{Motion, PairFit, fit_pairs};
-use crate::registration::icp::{Run, Spread, Termination};
+use crate::registration::icp::{Run, Termination};
 use crate::registration::input::MatchInput;
 use crate::registration::observer::MatchMonitor;
 use crate::registration::result::{
@@ -51,7 +51,6 @@ pub(crate) fn decide(
     } = refined;
     let alternatives = alternatives(input, &ranked, &target_from_source, &searches);
     let pairs = fit_kept(&run);
-    let Spread { p95, max } = run.spread();
     let (starts, mut timings) = collect_records(searches);
     timings.full = full;
     let pair_scale = pairs.map_or(1.0, |fit| match data_side {
@@ -62,13 +61,8 @@ pub(crate) fn decide(
     Ok(MatchOutcome {
         target_from_source,
         termination: run.termination.unwrap_or(Termination::MaxIterations),
-        rmse: run.rmse,
-        p95,
-        max,
-        fraction: run.fraction,
         data_side,
         normals_opposed: flipped,
-        objective: run.score,
         floor,
         alternatives,
         rivals_sought,
@@ -77,7 +71,6 @@ pub(crate) fn decide(
         starts,
         scale_check: ScaleCheck::new(input.source, input.target, pair_scale),
         mirror_check: MirrorCheck {
-            mirrored_rmse: pairs.map_or(run.rmse, |fit| fit.mirrored_rmse),
             score_ratio: opposite.map(|(ratio, _)| ratio),
             target_from_source: opposite.map(|(_, pose)| pose),
         },
@@ -147,11 +140,11 @@ fn collect_records(searches: Vec<MultiStart<'_>>) -> (Vec<StartRecord>, MatchTim
     (starts, timings)
 }
 
-/// The closed-form fit of the kept pairs with free scale, a check on units and hand.
+/// The closed-form fit of the kept pairs, whose scale is a check on units.
 fn fit_kept(run: &Run) -> Option<PairFit> {
     let pairs = run
         .kept_pairs()
         .map(|pair| (&pair.moved, &pair.matched, pair.weight));
-    // The rigid fit gives the mirrored rmse in comparable form, and the best scale as well.
+    // A rigid fit gives the best scale as well.
     fit_pairs(pairs, Motion::Rigid).ok()
 }
