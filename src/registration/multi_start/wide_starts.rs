@@ -1,6 +1,6 @@
 //! The survivors of the wide search as starts of the match.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::starts::{Start, StartKind};
 use crate::geometry::Similarity;
@@ -27,6 +27,8 @@ pub(crate) struct WideStarts<'a> {
     surfaces: [&'a Surface; 2],
     /// Source and target as grids, made when first asked for.
     grids: [Option<Arc<FeatureGrid>>; 2],
+    /// What the wide search of the larger part on itself finds, which is searched when first asked for.
+    on_itself: OnceLock<Vec<WideFind>>,
 }
 
 /// Where the surface and the grid of a side stand.
@@ -54,6 +56,7 @@ impl<'a> WideStarts<'a> {
             data_side,
             surfaces: [source, target],
             grids,
+            on_itself: OnceLock::new(),
         })
     }
 
@@ -80,7 +83,13 @@ impl<'a> WideStarts<'a> {
         let Some(grid) = self.larger().filter(|_| !self.search.is_whole()) else {
             return Ok(Vec::new());
         };
-        let found = WideSearch::on(model, model, grid).run(monitor)?;
+        let found = match self.on_itself.get() {
+            Some(found) => found,
+            None => {
+                let found = WideSearch::on(model, model, grid).run(monitor)?;
+                self.on_itself.get_or_init(|| found)
+            }
+        };
         let extent = model.measures().into();
         let is_other =
             |find: &&WideFind| !same_pose(&find.model_from_data, &Similarity::identity(), &extent);
