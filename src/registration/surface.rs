@@ -94,7 +94,7 @@ impl Surface {
         Self::assemble(mesh, side, monitor, |mesh, vectors| {
             let chordal_error = chordal_error(mesh, &topology, vectors, monitor)?;
             let border_edges = BorderEdges::of(mesh, &topology);
-            // Nothing later asks for inner edges, and they take as much as the mesh.
+            // Inner edges take as much as the mesh, and only a deviation asks for them later, which lists them anew.
             drop(topology);
             Ok((border_edges, chordal_error))
         })

@@ -57,6 +57,9 @@ fn distances_are_those_of_a_plain_loop() {
     let settings = DeviationSettings::default();
     let monitor = Monitor::silent();
     let field = source_on_target(&source, &onto, &pose, &settings, &monitor).unwrap();
+    let back = target_on_source(&source, &onto, &pose, &settings, &monitor).unwrap();
+    let both = both_ways(&source, &onto, &pose, &settings, &monitor).unwrap();
+    assert!(both == [field.clone(), back]);
     let brute = BruteForce::new(onto.mesh().clone());
     let mut n_inside = 0;
     for (vertex, position) in moved.positions().iter().enumerate() {

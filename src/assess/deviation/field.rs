@@ -72,6 +72,22 @@ impl DeviationField {
 /// bends down where the other part ends does not lie over it. Cosine of 60°.
 const MIN_FACING: f64 = 0.5;
 
+/// Both directions, that of the source's vertices first, as [`source_on_target`] and [`target_on_source`] give them.
+/// O(n · log n).
+pub fn both_ways(
+    source: &Surface,
+    target: &Surface,
+    target_from_source: &Similarity,
+    settings: &DeviationSettings,
+    monitor: &Monitor,
+) -> Result<[DeviationField; 2], Cancelled> {
+    let pair = Pair::of([source, target], target_from_source, settings, monitor)?;
+    Ok([
+        pair.source_on_target(monitor)?,
+        pair.target_on_source(monitor)?,
+    ])
+}
+
 /// Every vertex of the source against the triangles of the target. O(n · log n).
 pub fn source_on_target(
     source: &Surface,
@@ -80,17 +96,8 @@ pub fn source_on_target(
     settings: &DeviationSettings,
     monitor: &Monitor,
 ) -> Result<DeviationField, Cancelled> {
-    let way = Way {
-        data: source,
-        model: target,
-        world_from_data: *target_from_source,
-        world_from_model: Similarity::identity(),
-        sides: Sides::of(target, monitor)?,
-        is_data_source: true,
-    };
-    let limit = settings.limit_for(source, target, target_from_source.scale);
-    let reach = settings.reach_for(source, target, target_from_source.scale);
-    way.measure(limit, reach, monitor)
+    let pair = Pair::of([source, target], target_from_source, settings, monitor)?;
+    pair.source_on_target(monitor)
 }
 
 /// Every vertex of the target against the triangles of the source. O(n · log n).
@@ -101,17 +108,61 @@ pub fn target_on_source(
     settings: &DeviationSettings,
     monitor: &Monitor,
 ) -> Result<DeviationField, Cancelled> {
-    let way = Way {
-        data: target,
-        model: source,
-        world_from_data: Similarity::identity(),
-        world_from_model: *target_from_source,
-        sides: Sides::of(target, monitor)?,
-        is_data_source: false,
-    };
-    let limit = settings.limit_for(source, target, target_from_source.scale);
-    let reach = settings.reach_for(source, target, target_from_source.scale);
-    way.measure(limit, reach, monitor)
+    let pair = Pair::of([source, target], target_from_source, settings, monitor)?;
+    pair.target_on_source(monitor)
+}
+
+/// Two parts under a pose, and what holds for both directions.
+struct Pair<'a> {
+    source: &'a Surface,
+    target: &'a Surface,
+    pose: Similarity,
+    /// The sides of the target.
+    sides: Sides,
+    limit: f64,
+    reach: f64,
+}
+
+impl<'a> Pair<'a> {
+    fn of(
+        [source, target]: [&'a Surface; 2],
+        pose: &Similarity,
+        settings: &DeviationSettings,
+        monitor: &Monitor,
+    ) -> Result<Self, Cancelled> {
+        Ok(Self {
+            source,
+            target,
+            pose: *pose,
+            sides: Sides::of(target, monitor)?,
+            limit: settings.limit_for(source, target, pose.scale),
+            reach: settings.reach_for(source, target, pose.scale),
+        })
+    }
+
+    fn source_on_target(&self, monitor: &Monitor) -> Result<DeviationField, Cancelled> {
+        let way = Way {
+            data: self.source,
+            model: self.target,
+            world_from_data: self.pose,
+            world_from_model: Similarity::identity(),
+            sides: &self.sides,
+            is_data_source: true,
+        };
+        way.measure(self.limit, self.reach, monitor)
+    }
+
+    fn target_on_source(&self, monitor: &Monitor) -> Result<DeviationField, Cancelled> {
+        let way = Way {
+            data: self.target,
+            model: self.source,
+            world_from_data: Similarity::identity(),
+            world_from_model: self.pose,
+            sides: &self.sides,
+            is_data_source: false,
+        };
+        way.measure(self.limit, self.reach, monitor)
+    }
 }
 
 /// One of the two directions. "World" is the target's frame.
@@ -121,7 +172,7 @@ struct Way<'a> {
     world_from_data: Similarity,
     world_from_model: Similarity,
     /// The sides of the target.
-    sides: Sides,
+    sides: &'a Sides,
     is_data_source: bool,
 }
 

@@ -9,7 +9,7 @@ mod offset;
 mod spots;
 mod stats;
 
-pub use field::{DeviationField, OverlapClass, source_on_target, target_on_source};
+pub use field::{DeviationField, OverlapClass, both_ways, source_on_target, target_on_source};
 pub use offset::{ConstantOffset, ConstantPart, OffsetKind};
 pub use spots::{Spot, worst_spots};
 pub use stats::{DeviationStats, Histogram};
@@ -91,8 +91,7 @@ pub fn compare(
     monitor: &Monitor,
 ) -> Result<Deviation, Cancelled> {
     let pose = target_from_source;
-    let forth = source_on_target(source, target, pose, settings, monitor)?;
-    let back = target_on_source(source, target, pose, settings, monitor)?;
+    let [forth, back] = both_ways(source, target, pose, settings, monitor)?;
     let noise = faceting([source, target], pose.scale);
     let finish = |field: DeviationField, surface: &Surface, scale: f64| {
         let separation = SPOT_EDGES * surface.measures().mean_edge_length;

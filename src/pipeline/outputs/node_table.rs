@@ -1,9 +1,7 @@
 //! How far every node of both parts lies from the other part, as a table.
 
 use crate::assess::PoseUncertainty;
-use crate::assess::deviation::{
-    DeviationField, DeviationSettings, OverlapClass, source_on_target, target_on_source,
-};
+use crate::assess::deviation::{DeviationField, DeviationSettings, OverlapClass, both_ways};
 use crate::geometry::chunks::for_chunks;
 use crate::geometry::{Point3, Similarity};
 use crate::monitor::Monitor;
@@ -30,8 +28,7 @@ pub fn node_deviations(
     let (target, source) = (&crash.surface, &stamped.surface);
     let pose = crash_from_stamped;
     let settings = DeviationSettings::default();
-    let forth = source_on_target(source, target, pose, &settings, monitor)?;
-    let back = target_on_source(source, target, pose, &settings, monitor)?;
+    let [forth, back] = both_ways(source, target, pose, &settings, monitor)?;
     let still = Similarity::identity();
     let mut rows = Vec::new();
     let ways = [
