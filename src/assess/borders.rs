@@ -31,16 +31,17 @@ const ANOTHER_KIND: f64 = 4.0;
 const ONE_MIDDLE: f64 = 0.5;
 /// Over a curved sheet the middle of a hole floats by up to this share of its radius.
 const FLOATING: f64 = 0.5;
-/// A place is paired if nothing nearer than this share of its distance is beside its counterpart.
+/// A place is not paired where its own part has a border nearer to the counterpart than this share of the distance
+/// between the two.
 const MUTUAL: f64 = 0.7;
 /// Where fewer of the smaller part's borders lie beside borders of the other, the parts are trimmed differently
 /// and borders are no evidence of the shape.
 pub(crate) const LEAST_PAIRED: f64 = 0.4;
 /// Distances of borders are stated at this share of their length.
 pub(super) const STATED: f64 = 0.9;
-/// Points of the other part's borders in the tree lie at least this share of the reach apart, …
+/// Points of the other part's borders in the tree lie at least this share of the reach apart.
 const SPACING: f64 = 0.1;
-/// … and there are at most so many.
+/// There are at most so many of them.
 const N_DENSE: f64 = 40_000.0;
 
 /// A place on a border of one part beside a border of the other, in the target's frame.

@@ -119,8 +119,8 @@ impl<'a> ContactSearch<'a> {
         self.at_scaled(pose, None)
     }
 
-    /// The same with the source under the pose scaled along axes. A place of the target is then given where
-    /// it lies beside the source as it is.
+    /// The same with the source under the pose scaled along axes. A place of the source is given where scaling takes it;
+    /// one of the target is given where it lies, with the gap that is measured after scaling is undone.
     pub(super) fn at_scaled(
         &mut self,
         pose: &Similarity,

@@ -76,9 +76,10 @@ impl ScaleCheck {
 /// Parts that cover each other in part differ in size too, at the least overlap of 20 % by a factor of about
 /// 2.2: smaller ratios than this are no hint.
 const LEAST_RATIO: f64 = 4.0;
-/// By how much a ratio may miss the factor of a unit in which parts are modelled,
+/// The ratio of the sizes may differ from the factor between units in which parts are usually modelled by this factor.
 const NEAR_FACTOR: f64 = 1.7;
-/// and that of one in which they rarely are, to which any two different parts come near by chance.
+/// It may differ by this one from a factor to or from a unit in which parts rarely are: any two parts come near one by
+/// chance.
 const NEAR_RARE_FACTOR: f64 = 1.1;
 
 /// The unit factor nearest to `size_ratio`, if it comes near one.

@@ -69,7 +69,7 @@ pub fn chosen_by_shape(
     let closer = || {
         candidates
             .iter()
-            .find(|other| other.lies_exactly_elsewhere_unlike(&result, distances.noise))
+            .find(|other| other.is_exact_partial_fit_beside(&result, distances.noise))
     };
     let winner = better.or_else(closer).unwrap_or(&result);
     // Where surfaces leave the pose free, borders and holes have compared all poses, unless outlines are no evidence.
@@ -119,7 +119,7 @@ impl Beside<'_> {
             return beaten(other);
         }
         let fits_elsewhere = self.overhangs
-            && candidate.fits_elsewhere_as_well_as(winner, &self.distances)
+            && candidate.is_equal_partial_fit_beside(winner, &self.distances)
             || candidate.lies_much_closer_elsewhere_than(winner, noise);
         let ratio = if fits_elsewhere {
             Some(1.0)

@@ -19,8 +19,9 @@ pub(super) const LITTLE_LESS: f64 = 0.02;
 pub(super) const LEAST_SHARED: f64 = 0.5;
 /// Lengths of so many tolerances are differences whatever the facets are and however the part is bent.
 const CLEARLY: f64 = 2.0;
-/// Where a piece of the smaller part meets the other, it lies much closer than all of it under another pose if it lies
-/// apart by at most this share of what a bend of the whole is in that piece, which grows with the square of its length.
+/// A piece of the smaller part lies much closer to the other part than the whole does under another pose if it lies apart
+/// by at most this share of what a bend that moves the whole so far apart leaves in the piece. A bend grows with the
+/// square of the length.
 const MUCH_CLOSER: f64 = 0.5;
 /// Surfaces that lie apart by at most so many times what facets leave lie on each other.
 const ON_EACH_OTHER: f64 = 2.0;
@@ -138,15 +139,15 @@ pub(super) struct Candidate {
     /// Whether each part has a piece that the other lacks, and hardly any of the smaller one lies neither on the other
     /// part nor beyond its borders.
     only_overhangs: bool,
-    /// How far the surfaces lie apart by a bend,
+    /// How far the surfaces lie apart by a bend.
     bend: f64,
-    /// and besides it.
+    /// How far they lie apart besides it.
     pub(super) remainder: f64,
     /// A constant distance of the sheets besides.
     offset: f64,
-    /// How far outlines and holes lie apart, where there are enough of both, …
+    /// How far outlines and holes lie apart, where there are enough of both.
     off: Option<BordersOff>,
-    /// … and what is accepted of them.
+    /// How far they may lie apart.
     limit: f64,
 }
 
@@ -195,7 +196,7 @@ impl Candidate {
     /// Whether the parts, each of which has a piece that the other lacks, share enough under this pose too, and what
     /// they share is as much alike. That more overlaps under one of two such poses is no evidence: a row of like
     /// features may be shifted by one of them.
-    pub(super) fn fits_elsewhere_as_well_as(&self, other: &Self, distances: &Distances) -> bool {
+    pub(super) fn is_equal_partial_fit_beside(&self, other: &Self, distances: &Distances) -> bool {
         let is_as_close = |own: f64, other: f64| own <= distances.as_close_as(UNREMARKABLE, other);
         self.only_overhangs
             && self.met >= LEAST_SHARED
@@ -234,7 +235,7 @@ impl Candidate {
     }
 
     /// The same where the piece even lies on the other part but for what facets leave.
-    pub(super) fn lies_exactly_elsewhere_unlike(&self, other: &Self, noise: f64) -> bool {
+    pub(super) fn is_exact_partial_fit_beside(&self, other: &Self, noise: f64) -> bool {
         self.apart_in_all() <= ON_EACH_OTHER * noise
             && self.lies_much_closer_elsewhere_than(other, noise)
     }

@@ -29,7 +29,7 @@ pub enum Speed {
 /// Choices of a simplification. `Default` is the exact one with everything protected.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimplifySettings {
-    /// The ceiling: the result has at most so many triangles, unless nothing legal is left.
+    /// The maximum: the result has at most so many triangles, unless nothing legal is left.
     pub max_triangles: usize,
     /// Where merged vertices go.
     pub placement: Placement,
@@ -63,7 +63,7 @@ impl Default for SimplifySettings {
 }
 
 impl SimplifySettings {
-    /// The default settings with this ceiling.
+    /// The default settings with this maximum.
     pub fn to_triangles(max_triangles: usize) -> Self {
         Self {
             max_triangles,
@@ -89,7 +89,7 @@ impl SimplifySettings {
 /// Why a simplification ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StopReason {
-    /// The ceiling was reached, or the mesh was below it from the start.
+    /// The maximum was reached, or the mesh was below it from the start.
     Reached,
     /// Every edge that is left is protected.
     NothingLegal {

@@ -24,10 +24,11 @@ const OVERHANG_PRICE: f64 = 0.5;
 /// Where less than this fraction of the smaller part is covered, what is not covered counts as much against
 /// a pose as what misses: a few points always fit.
 const SLIVER: f64 = 0.5;
-/// A point of the larger part is no counterpart of a place of the smaller one that has another at less than this share
-/// of the distance: it belongs to another sheet, such as a tool beside the blank …
+/// The pair of a point of the larger part does not count if the place of the smaller part that it was paired with lies
+/// at less than this share of the distance from another place of the larger part. The point then belongs to another
+/// sheet, such as a tool beside the blank.
 const NEARER: f64 = 0.5;
-/// … from this many times the floor on.
+/// Pairs that lie apart by at most this many floors count in any case.
 const APART: f64 = 4.0;
 /// Points farther beyond the border than this fraction of the edge length overhang.
 const OVERHANG: f64 = 0.5;
