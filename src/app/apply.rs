@@ -2,8 +2,8 @@
 //! about it comes after.
 
 use super::{
-    AppState, Command, Dialog, Effect, FreeWindow, LogStep, MatchCommand, NoticeCommand, Reason,
-    Section, Settings, ViewCommand,
+    AppState, Command, Dialog, Effect, FreeWindow, LogStep, MatchCommand, NoticeCommand,
+    NoticeLevel, Reason, Section, Settings, ViewCommand,
 };
 use crate::role::Role;
 
@@ -84,6 +84,10 @@ impl AppState {
             Command::Notice(command) => match command {
                 NoticeCommand::Dismiss(id) => work.log.notices.dismiss(id),
                 NoticeCommand::MarkRead => work.log.notices.mark_read(),
+                NoticeCommand::Explain(text) => {
+                    work.log_at(NoticeLevel::Note, LogStep::Window, None, text, None);
+                    work.log.notices.last_is_read();
+                }
                 NoticeCommand::Tell(level, text) => {
                     work.log_at(level, LogStep::Window, None, text, None);
                 }
@@ -178,7 +182,16 @@ impl AppState {
     }
 
     /// Leaves at once, or asks first if something would be lost.
-    pub(super) fn quit(&mut self) -> Vec<Effect> {
+    fn quit(&mut self) -> Vec<Effect> {
+        if self.unfinished_work().is_some() {
+            self.view.dialog = Some(Dialog::Unsaved);
+            return Vec::new();
+        }
+        self.leave()
+    }
+
+    /// [`AppState::quit`], whatever runs.
+    pub(super) fn leave(&mut self) -> Vec<Effect> {
         if self.is_unsaved() {
             self.view.dialog = Some(Dialog::Unsaved);
             return Vec::new();

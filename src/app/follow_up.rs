@@ -94,7 +94,6 @@ impl AppState {
             FollowUp::PartsSwapped => self.see_swapped(),
             FollowUp::PartLoaded(role) => {
                 self.with_scene(|view, scene| view.fit_after_load(role, scene));
-                self.view.sections.arrange();
                 self.go_on_from_load();
             }
             FollowUp::PartReselected(role) => {
@@ -159,7 +158,7 @@ impl AppState {
                 return vec![self.write_project(path, replaces)];
             }
             FollowUp::Autosave => return self.autosave(),
-            FollowUp::Quit => return self.quit(),
+            FollowUp::Quit => return self.leave(),
         }
         Vec::new()
     }
@@ -191,11 +190,16 @@ impl AppState {
     /// Two single parts need no choice, so the sections after loading come next; a deck of many
     /// parts is chosen from first.
     fn go_on_from_load(&mut self) {
+        self.view.sections.arrange();
         let is_single = |part: &Part| part.facts.parts.len() <= 1;
         let is_plain = |both: PerRole<&Part>| is_single(both.crash) && is_single(both.stamped);
         if self.document.both().is_some_and(is_plain) {
             self.view.sections.touch(Section::Match);
             self.view.sections.touch(Section::Reduce);
+        }
+        // The result of the file as it was before: what is to be done about it is there.
+        if self.document.result.is_some() && self.document.current_result().is_none() {
+            self.view.sections.touch(Section::Match);
         }
     }
 

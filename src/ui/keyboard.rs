@@ -7,7 +7,7 @@ use egui::{Event, Modifiers};
 use super::palette;
 use crate::app::{
     Action, AppState, Axis, Command, Dialog, Key, KeyMode, ModalInput, MoveCommand, NoticeCommand,
-    NoticeLevel, Section, Shortcut, ViewCommand,
+    Section, Shortcut, ViewCommand,
 };
 
 /// Actions whose keys act while a dialog lies over the window.
@@ -212,7 +212,7 @@ fn of_event(
     }
     match action.enabled(state) {
         Err(reason) if SAY_WHY.contains(&action) => {
-            let why = NoticeCommand::Tell(NoticeLevel::Note, reason.to_string()).into();
+            let why = NoticeCommand::Explain(reason.to_string()).into();
             // The section that the reason points to.
             let is_map = action == Action::MapOrCancel && state.document.both().is_some();
             let open = is_map.then(|| ViewCommand::OpenSection(Section::Map, true).into());

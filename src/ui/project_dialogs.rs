@@ -14,19 +14,30 @@ const BUTTON: f32 = 104.0;
 /// Unsaved work, before the program ends.
 pub fn unsaved_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.set_width(400.0);
-    ui.heading("Save changes before closing?");
+    let is_unsaved = state.is_unsaved();
+    ui.heading(if is_unsaved {
+        "Save changes before closing?"
+    } else {
+        "Close now?"
+    });
     let name = state.project_name().unwrap_or_else(|| state.work_title());
     paragraph(ui, name);
-    paragraph(
-        ui,
-        "Unsaved changes to pose, levels, settings and results will be lost.",
-    );
+    if is_unsaved {
+        paragraph(
+            ui,
+            "Unsaved changes to pose, levels, settings and results will be lost.",
+        );
+    }
+    if let Some(running) = state.unfinished_work() {
+        paragraph(ui, format!("{running} It ends without a result."));
+    }
     ui.add_space(UNIT);
     ui.horizontal(|ui| {
-        if primary(ui, "Save").clicked() {
+        if is_unsaved && primary(ui, "Save").clicked() {
             commands.push(ProjectCommand::SaveAndQuit.into());
         }
-        if plain(ui, "Don’t save").clicked() {
+        let without = if is_unsaved { "Don’t save" } else { "Close" };
+        if plain(ui, without).clicked() {
             commands.push(ProjectCommand::QuitUnsaved.into());
         }
         if plain(ui, "Cancel").clicked() {

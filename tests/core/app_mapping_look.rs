@@ -119,6 +119,10 @@ fn mapped_and_stamped_are_wiped_and_blinked_between_where_both_show_one_quantity
     show(&mut window, Some(MapPicture::Difference));
     assert!(!window.state.can_compare_mapped());
     assert_eq!(window.state.mapped_wipe(), None);
+    // Nothing would be seen of it: the key says why, and nothing is kept.
+    assert!(Action::ToggleWipe.enabled(&window.state).is_err());
+    window.act(Action::ToggleWipe);
+    assert_eq!(window.state.view.display.wipe, Some(0.5));
 }
 
 #[test]

@@ -261,6 +261,43 @@ fn a_file_that_changed_keeps_the_pose_and_ages_the_result() {
     assert!(toast.text.contains("has changed since"), "{}", toast.text);
 }
 
+/// A project knows which parts were exchanged after the match, not only that something was.
+#[test]
+fn a_part_exchanged_after_the_match_is_still_exchanged_when_the_project_is_opened() {
+    let is_told = |window: &Window, when: &str| {
+        let state = &window.state;
+        assert!(state.document.result.is_some(), "{when}");
+        assert!(state.document.match_of_parts().is_err(), "{when}");
+        let stale = state.stale(Section::Match).map(|stale| stale.reason);
+        let reason = "a part was exchanged after the match";
+        assert_eq!(stale, Some(reason), "{when}");
+    };
+    let (_folder, [crash, stamped, path]) = folder();
+    let mut window = worked(&crash, &stamped);
+    std::fs::write(&crash, touched(&crash)).unwrap();
+    window.apply(FileCommand::Reload(Role::Crash));
+    is_told(&window, "read again");
+    save(&mut window, &path);
+    is_told(&open(&path), "opened");
+    // Once more: what is saved is what was opened.
+    let mut again = open(&path);
+    again.apply(MoveCommand::Flip(Axis::X));
+    save(&mut again, &path);
+    is_told(&open(&path), "opened and saved again");
+
+    // A project of a program that did not keep it still opens.
+    let text = std::fs::read_to_string(&path).unwrap();
+    let mut project: serde_json::Value = serde_json::from_str(&text).unwrap();
+    project["result"]
+        .as_object_mut()
+        .unwrap()
+        .remove("exchanged");
+    let old = serde_json::to_string(&project).unwrap();
+    let (old, notes) = Project::parse(&old, &path).unwrap();
+    assert!(notes.is_empty(), "{notes:?}");
+    assert_eq!(old.result.unwrap().exchanged, PerRole::both(false));
+}
+
 /// Another window's state of the project is not written over; this work can go elsewhere, or that state be opened.
 #[test]
 fn a_project_that_is_not_saved_offers_what_can_be_done() {
@@ -688,6 +725,17 @@ fn leaving_asks_only_if_something_would_be_lost() {
     assert_eq!(window.state.view.dialog, None);
     window.act(Action::Undo);
     assert!(quits(&mut window));
+    // Nothing is there yet that could be saved, but minutes of a match would be lost.
+    window.holds = true;
+    window.act(Action::MatchOrStop);
+    assert!(!window.state.is_unsaved() && !quits(&mut window));
+    assert_eq!(window.state.view.dialog, Some(Dialog::Unsaved));
+    let running = window.state.unfinished_work();
+    assert_eq!(running, Some("A match is running."));
+    window.apply(Command::Escape);
+    window.apply(Command::CancelPresent);
+    assert_eq!(window.state.unfinished_work(), None);
+    window.holds = false;
     window.act(Action::Redo);
     window.apply(ProjectCommand::QuitUnsaved);
     assert!(window.effects.iter().any(|e| matches!(e, Effect::Quit)));

@@ -62,7 +62,12 @@ pub(super) fn is_reduced(state: &AppState) -> Result<(), Reason> {
 /// `Ok` if there is something to blink or wipe between.
 pub(super) fn has_two_pictures(state: &AppState) -> Result<(), Reason> {
     let any = state.view.is_moved_over || is_reduced(state).is_ok();
-    require(any, "Move the stamped part over first, or reduce a part.")
+    require(any, "Move the stamped part over first, or reduce a part.")?;
+    let is_alone = state.is_mapping_apart() && !state.can_compare_mapped();
+    require(
+        !is_alone,
+        "Only the crash part has these colours: show a quantity that both parts have.",
+    )
 }
 
 pub(super) fn has_result(state: &AppState) -> Result<(), Reason> {

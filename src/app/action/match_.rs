@@ -231,7 +231,7 @@ fn level_step(state: &AppState, direction: i32, at_end: &'static str) -> Result<
 fn has_alternative(state: &AppState) -> Result<(), Reason> {
     let result = state.document.match_of_parts()?;
     let n_alternatives = facts::n_alternatives(&result.run);
-    require(n_alternatives > 0, "This match has no other pose.")?;
+    require(n_alternatives > 0, "No other pose fits nearly as well.")?;
     let is_in_doubt = state.is_unit_in_doubt();
     require(
         !is_in_doubt,

@@ -197,6 +197,13 @@ impl Notices {
         }
     }
 
+    /// The newest message answers what was just asked for: no one has to be told of it later.
+    pub(in crate::app) fn last_is_read(&mut self) {
+        if let Some(last) = self.items.last_mut() {
+            last.is_unread = false;
+        }
+    }
+
     /// The newest message reports a failed job.
     pub(in crate::app) fn last_is_of(&mut self, job: JobKey) {
         if let Some(last) = self.items.last_mut() {

@@ -31,7 +31,7 @@ impl AppState {
         &mut self,
         take: impl FnOnce(&mut Work<'_>, &MappingState) -> Vec<Effect>,
     ) -> Vec<Effect> {
-        let is_restored = self.mapping.restoring == Some(self.document.stamp());
+        let is_restored = self.mapping.is_restoring(&self.document);
         let is_saved = is_restored && !self.is_unsaved();
         let (mut work, topics) = self.split();
         let effects = take(&mut work, topics.mapping);
@@ -39,6 +39,13 @@ impl AppState {
             self.project.keep_as_saved(&self.document);
         }
         effects
+    }
+}
+
+impl MappingState {
+    /// True if the mapping that is made, or was made last, is that of the project that was opened.
+    pub(in crate::app) fn is_restoring(&self, document: &Document) -> bool {
+        self.restoring == Some(document.stamp())
     }
 }
 

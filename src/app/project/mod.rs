@@ -15,7 +15,7 @@ use super::{
     AppState, Document, Effect, Further, Mapping, MatchResult, Part, age_text, clock_text,
 };
 use crate::formats::Selection;
-use crate::jobs::{PartSource, ProjectFile, ProjectRequest};
+use crate::jobs::{JobKey, PartSource, ProjectFile, ProjectRequest};
 use crate::pipeline::autosave::RecoveredSession;
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::pipeline::project::{FurtherEntry, PartEntry, PlacingEntry, Project, ResultEntry};
@@ -110,6 +110,9 @@ impl AppState {
             is_mapped: document.current_mapping().is_some(),
             result: document.result.as_ref().map(|result| ResultEntry {
                 is_current: document.current_result().is_some(),
+                exchanged: PerRole::from_fn(|role| {
+                    result.stamp.parts.get(role) != document.stamp().parts.get(role)
+                }),
                 alternative: result.alternative,
                 run: result.run.clone_inner(),
             }),
@@ -151,6 +154,21 @@ impl AppState {
     /// True if closing the window now would lose something.
     pub fn is_unsaved(&self) -> bool {
         self.has_work() && self.project.saved.as_ref() != Some(&self.document)
+    }
+
+    /// What runs and would be lost if the window closed now.
+    pub fn unfinished_work(&self) -> Option<&'static str> {
+        let is_restoring = self.mapping.is_restoring(&self.document);
+        let runs = |key: JobKey| self.jobs.is_active(key) && !(key == JobKey::Map && is_restoring);
+        let work = [
+            (JobKey::Match, "A match is running."),
+            (JobKey::Sweep, "A sweep is running."),
+            (JobKey::Map, "A mapping is running."),
+            (JobKey::Export, "A file is being written."),
+        ];
+        work.into_iter()
+            .find(|(key, _)| runs(*key))
+            .map(|(_, words)| words)
     }
 
     /// True if there is something new to be kept in case of a crash, and no drag is under way.

@@ -325,10 +325,10 @@ fn part_of(opened: &OpenedPart, entry: &PartEntry, revision: u64) -> Part {
     part
 }
 
-/// The inputs a stored result stands for: the present ones where nothing differs.
+/// The inputs a stored result stands for: the present ones where nothing differs from those that were matched.
 fn result_stamp(entry: &ResultEntry, now: Stamp, is_same: PerRole<bool>) -> Stamp {
     let part = |role| {
-        if *is_same.get(role) {
+        if *is_same.get(role) && !entry.exchanged.get(role) {
             *now.parts.get(role)
         } else {
             0

@@ -192,6 +192,9 @@ impl ProjectFile {
 pub struct ResultEntry {
     /// True if nothing was changed after the match.
     pub is_current: bool,
+    /// The parts that were exchanged after the match, or of which other pieces were chosen.
+    #[serde(default)]
+    pub exchanged: PerRole<bool>,
     /// The alternative that was shown instead of the best pose.
     #[serde(default)]
     pub alternative: Option<usize>,

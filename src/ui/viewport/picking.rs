@@ -5,7 +5,7 @@ use egui::{Pos2, Rect};
 use super::frame::FrameContext;
 use super::navigation::{pixel_of, pos_of, screen_of};
 use super::picture::Hit;
-use crate::app::{Command, NoticeCommand, NoticeLevel, PairCommand, PickKind, PickedPoint};
+use crate::app::{Command, NoticeCommand, PairCommand, PickKind, PickedPoint};
 use crate::geometry::{Camera, Point3};
 use crate::role::Role;
 
@@ -63,7 +63,7 @@ impl PointPicker<'_> {
         let pick = self.pick();
         if self.0.response.clicked() {
             if let Some(why) = self.0.state.wrong_pick(self.0.view.window) {
-                commands.push(NoticeCommand::Tell(NoticeLevel::Note, why).into());
+                commands.push(NoticeCommand::Explain(why).into());
             } else if let Some(Pick { role, picked, .. }) = pick {
                 let point = picked;
                 commands.push(PairCommand::Pick { role, point }.into());
