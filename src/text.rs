@@ -249,12 +249,16 @@ impl Lengths {
                 format!("< {MICROMETRE}")
             }
             (Some(decimals), Some(unit)) => {
-                let in_mm = unit.factor_to(LengthUnit::Millimeter);
-                let more = in_mm.log10().ceil().max(0.0) as usize;
-                fixed(value, usize::from(decimals) + more)
+                fixed(value, usize::from(decimals) + decimals_beyond_mm(unit))
             }
             _ => length(value),
         }
+    }
+
+    /// The coordinates of a place, to a tenth of a millimetre or finer: `(1.0, 0.0, −2.5)`.
+    pub fn place(self, coordinates: [f64; 3]) -> String {
+        let finer = self.unit.map_or(0, decimals_beyond_mm);
+        vector(coordinates, 1 + finer)
     }
 
     /// The number with its sign: `+0.381`, `−1.35`.
@@ -312,6 +316,12 @@ impl Lengths {
     }
 }
 
+/// How many decimals more than in millimetres show no less in `unit`.
+fn decimals_beyond_mm(unit: LengthUnit) -> usize {
+    let in_mm = unit.factor_to(LengthUnit::Millimeter);
+    in_mm.log10().ceil().max(0.0) as usize
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -333,6 +343,15 @@ mod tests {
             "{words}"
         );
         assert_eq!(without_error_number("part (os error"), "part (os error");
+    }
+
+    #[test]
+    fn places_in_metres_are_told_as_finely_as_in_millimetres() {
+        let place = |unit| Lengths::new(unit).place([0.0128, -0.5, 0.0]);
+        let in_meters = place(Some(LengthUnit::Meter));
+        assert_eq!(in_meters, "(0.0128, −0.5000, 0.0000)");
+        assert_eq!(place(Some(LengthUnit::Millimeter)), "(0.0, −0.5, 0.0)");
+        assert_eq!(place(None), "(0.0, −0.5, 0.0)");
     }
 
     #[test]

@@ -212,7 +212,7 @@ impl ConstantOffset {
 impl ShapeReason {
     /// The difference in words, without a capital and a full stop.
     pub fn words(&self, lengths: Lengths) -> String {
-        let place = |at: &Point3| vector((*at).into(), 1);
+        let place = |at: &Point3| lengths.place((*at).into());
         let [by, limit] = match self {
             Self::Bent { by, limit }
             | Self::Surface { by, limit, .. }
@@ -323,7 +323,7 @@ impl ShapeStatement {
             (None, Some(border)) if self.reasons.is_empty() => format!(
                 ", trimmed differently at one place, borders {} apart at {}",
                 lengths.of(border.by),
-                vector(border.at.into(), 1)
+                lengths.place(border.at.into())
             ),
             _ => String::new(),
         };

@@ -173,6 +173,12 @@ fn colours_are_symmetric_round_and_neutral_within_the_tolerance() {
     let comparison = window.state.comparison().unwrap();
     let scale = Coloring::default().deviation_scale(comparison);
     assert_eq!((scale.min, scale.max, scale.tolerance), (-1.0, 1.0, 0.2));
+    let narrow = Coloring {
+        limits: Some([-0.4, 0.4]),
+        ..Coloring::default()
+    };
+    let scale = narrow.deviation_scale(comparison);
+    assert_eq!((scale.max, scale.tolerance), (0.4, 0.2), "same share");
     let typed = Coloring {
         limits: Some([-0.5, 2.0]),
         tolerance: Some(0.3),

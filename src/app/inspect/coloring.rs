@@ -25,7 +25,7 @@ pub struct Coloring {
     pub has_pattern: bool,
     /// Values at the ends of the deviation's colours; `None` follows the values.
     pub limits: Option<[f64; 2]>,
-    /// Half width of the neutral band; `None` follows the limits.
+    /// Half width of the neutral band; `None` follows the values.
     pub tolerance: Option<f64>,
 }
 
@@ -90,9 +90,9 @@ impl Coloring {
             None if is_signed => [-limit, limit],
             None => [0.0, limit],
         };
-        let reach = max.abs().max(min.abs());
         ColorScale {
-            tolerance: self.tolerance.unwrap_or_else(|| round_quarter(reach)),
+            // Of the values, not of limits that were set by hand: a choice of colours changes no share.
+            tolerance: self.tolerance.unwrap_or_else(|| round_quarter(limit)),
             n_bands: self.n_bands,
             reversed: self.is_reversed,
             has_pattern: self.has_pattern,

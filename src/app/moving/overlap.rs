@@ -18,7 +18,7 @@ pub struct PoseOverlap {
     pub overlap: f64,
     /// Distance up to which a place counts as covered.
     pub limit: f64,
-    /// Against the pose before.
+    /// Against the pose before, if it was the same part that was covered better.
     pub change: Option<f64>,
 }
 
@@ -69,7 +69,7 @@ impl MovingState {
     ) {
         let before = self
             .overlap
-            .filter(|known| known.stamp.parts == stamp.parts);
+            .filter(|known| known.stamp.parts == stamp.parts && known.of == of);
         self.overlap = Some(PoseOverlap {
             stamp,
             of,

@@ -310,7 +310,7 @@ fn overlap(state: &AppState) -> Option<String> {
         .then(|| overlap_words(known, state.lengths()))
 }
 
-/// `95 % of crash within 4.50 mm (−5)`: short enough for a narrow window.
+/// `95 % of crash within 4.50 mm (−5 points)`: short enough for a narrow window.
 fn overlap_words(known: &PoseOverlap, lengths: Lengths) -> String {
     let mut text = format!(
         "{} of {} within {}",
@@ -322,7 +322,8 @@ fn overlap_words(known: &PoseOverlap, lengths: Lengths) -> String {
     if let Some(change) = known.change.filter(|change| change.abs() >= 0.005) {
         // Without an arrow: a triangle stands for the stamped part.
         let sign = if change > 0.0 { "+" } else { "−" };
-        text += &format!(" ({sign}{})", (100.0 * change.abs()).round());
+        let points = counted((100.0 * change.abs()).round() as usize, "point");
+        text += &format!(" ({sign}{points})");
     }
     text
 }
@@ -444,7 +445,7 @@ mod tests {
         };
         let lengths = Lengths::new(Some(LengthUnit::Millimeter));
         let words = overlap_words(&known, lengths);
-        assert_eq!(words, "95 % of crash within 4.50 mm (−5)");
+        assert_eq!(words, "95 % of crash within 4.50 mm (−5 points)");
         known.change = Some(0.001);
         let words = overlap_words(&known, lengths);
         assert_eq!(words, "95 % of crash within 4.50 mm");

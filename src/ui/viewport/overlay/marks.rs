@@ -10,7 +10,7 @@ use crate::geometry::camera::scale_bar;
 use crate::mapping::Status;
 use crate::pipeline::forming_values::FormingValue;
 use crate::role::Role;
-use crate::text::{fixed, inside, length, vector};
+use crate::text::{fixed, inside, length};
 use crate::ui::viewport::fields::FieldKind;
 use crate::ui::viewport::navigation::{DragKind, pos_of, screen_of};
 use crate::ui::viewport::picture::Hit;
@@ -127,7 +127,8 @@ fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32, legend: Option<Rec
     pieces.extend(file_name(over.frame.state, hit));
     pieces.extend(hit.node_id.map(|id| format!("node {id}")));
     let place = hit.node_id.map_or(&hit.point, |_| &hit.node);
-    pieces.push(vector((*place).into(), 1));
+    let lengths = over.frame.state.lengths_of(hit.role);
+    pieces.push(lengths.place((*place).into()) + lengths.suffix());
     pieces.extend(hit.element.map(|element| format!("element {element}")));
     // A row ends between two pieces only.
     let whole = pieces
