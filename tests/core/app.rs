@@ -962,6 +962,14 @@ fn a_match_is_one_step_and_its_alternatives_are_one_key_away() {
 }
 
 #[test]
+fn why_something_is_not_possible_is_a_toast_and_no_news() {
+    let mut window = Window::new();
+    window.apply(NoticeCommand::Explain("Run a match first.".into()));
+    assert_eq!(toasts(&window.state), ["Run a match first."]);
+    assert_eq!(window.state.log.notices.n_unread(), 0);
+}
+
+#[test]
 fn back_to_the_result_is_in_the_log() {
     let mut window = Window::with_both();
     window.act(Action::MatchOrStop);
@@ -1314,6 +1322,28 @@ fn every_enabled_action_does_something() {
         let is_enabled = action.enabled(&window.state).is_ok();
         let does = action.command(&window.state).is_some();
         assert_eq!(is_enabled, does, "{action:?}");
+    }
+}
+
+#[test]
+fn what_can_be_on_or_off_says_which() {
+    let mut window = Window::with_both();
+    let mut switches = Action::ALL.to_vec();
+    switches.retain(|action| {
+        *action != Action::ToggleMoveOver && action.is_on(&window.state).is_some()
+    });
+    assert!(switches.contains(&Action::ToggleEdges) && switches.contains(&Action::ToggleLink));
+    window.act(Action::ToggleMoveOver);
+    assert_eq!(Action::ToggleMoveOver.is_on(&window.state), Some(true));
+    for action in switches {
+        if action.enabled(&window.state).is_err() {
+            continue;
+        }
+        let before = action.is_on(&window.state);
+        window.act(action);
+        assert_ne!(action.is_on(&window.state), before, "{action:?}");
+        window.act(action);
+        assert_eq!(action.is_on(&window.state), before, "{action:?}");
     }
 }
 
@@ -1901,6 +1931,30 @@ fn the_camera_brings_all_selected_parts_into_view() {
 }
 
 #[test]
+fn a_view_of_the_whole_part_stays_one_from_every_side() {
+    let mut window = Window::with_both();
+    let role = Role::Crash;
+    window.apply(ViewCommand::FitAll(role));
+    let fitted = *window.state.view.cameras.get(role);
+    let look = |window: &mut Window, camera| {
+        window.apply(ViewCommand::SetCamera(role, camera));
+        window.apply(ViewCommand::Standard(role, StandardView::Front));
+        window.state.view.is_fitted(role)
+    };
+    let mut turned = fitted;
+    turned.set_standard_view(StandardView::Top);
+    assert!(look(&mut window, turned), "turned by hand before");
+    let close = shapematch::geometry::Camera {
+        height: 0.1 * window.state.view.cameras.get(role).height,
+        ..fitted
+    };
+    assert!(
+        !look(&mut window, close),
+        "what was brought closer stays so"
+    );
+}
+
+#[test]
 fn a_step_back_to_a_part_elsewhere_takes_the_camera_there() {
     let folder = tempfile::tempdir().unwrap();
     write_bracket(folder.path(), SampleVariant::Plain);
@@ -2127,4 +2181,9 @@ fn the_sections_follow_the_work_and_many_parts_are_chosen_from_first() {
     assert_eq!(in_use(&window), Section::Match);
     window.apply(ViewCommand::OpenSection(Section::Load, true));
     assert_eq!(in_use(&window), Section::Load);
+    // Of a file that is read again the result is out of date, and the match is what comes next.
+    window.act(Action::MatchOrStop);
+    window.apply(FileCommand::Reload(Role::Crash));
+    assert!(window.state.stale(Section::Match).is_some());
+    assert_eq!(in_use(&window), Section::Match);
 }

@@ -72,6 +72,17 @@ fn after_every_step_of_the_pose_the_stamped_window_shows_its_part_whole() {
     }
 }
 
+/// A camera that turned with the part would show the same picture as before.
+#[test]
+fn a_part_that_is_turned_over_is_seen_turned_over() {
+    let mut harness = harness(Desk::with_sheets(None));
+    let before = harness.state().camera(Role::Stamped);
+    act(&mut harness, Action::FlipX);
+    let after = harness.state().camera(Role::Stamped);
+    assert_eq!(after.world_from_view, before.world_from_view);
+    assert_eq!(seen(&harness).0, 1.0);
+}
+
 #[test]
 fn fit_all_fits_both_windows() {
     let mut harness = harness(Desk::with_sheets(None));

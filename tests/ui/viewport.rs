@@ -225,6 +225,35 @@ pub fn area(harness: &Harness<'_, Desk>, role: Role) -> Rect {
         .rect()
 }
 
+/// What is under the pointer offers what its row in the list does.
+#[test]
+fn the_menu_of_a_part_in_3d_is_that_of_its_row() {
+    let mut harness = harness(Desk::with_sheets(None));
+    let pos = area(&harness, Role::Crash).center();
+    harness.event(Event::PointerMoved(pos));
+    harness.run_steps(2);
+    for pressed in [true, false] {
+        harness.event(Event::PointerButton {
+            pos,
+            button: PointerButton::Secondary,
+            pressed,
+            modifiers: egui::Modifiers::NONE,
+        });
+        harness.run_steps(2);
+    }
+    for name in [
+        "Hide",
+        "Show only this",
+        "Show all",
+        "Match only this",
+        "Find parts like this",
+        "Fit selection",
+        "Rotate about this point",
+    ] {
+        assert!(harness.query_by_label(name).is_some(), "{name}");
+    }
+}
+
 #[test]
 fn a_drag_orbits_and_the_grabbed_point_stays() {
     let mut harness = harness(Desk::with_sheets(None));

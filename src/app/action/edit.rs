@@ -69,7 +69,7 @@ const PARTS: &[ActionRow] = &[
     },
     ActionRow {
         action: Action::IsolateSelected,
-        label: "Isolate",
+        label: "Show only this",
         tooltip: "Hide all parts but the selected ones",
         keys: Keys::press(&[shift('H')]),
         enabled: has_selection,

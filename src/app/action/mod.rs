@@ -13,7 +13,8 @@ mod view;
 pub use row::{ActionRow, KeyMode, Keys, MenuGroup, Reason};
 pub use shortcut::{Key, Shortcut};
 
-use super::{AppState, Command, Dialog, ViewCommand};
+use super::{AppState, ColorBy, Command, Dialog, ShownGeometry, ViewCommand};
+use crate::geometry::camera::{OrbitStyle, Projection};
 
 /// The menus, from left to right.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -358,6 +359,39 @@ impl Action {
     /// `Ok` if the action is possible now, else why it is not.
     pub fn enabled(self, state: &AppState) -> Result<(), Reason> {
         (self.row().enabled)(state)
+    }
+
+    /// Whether what it switches is on; `None` of an action that is no switch.
+    pub fn is_on(self, state: &AppState) -> Option<bool> {
+        let (view, display) = (&state.view, &state.view.display);
+        Some(match self {
+            Self::ToggleGizmo => state.moving.has_gizmo,
+            Self::PairTool => state.pairs.tool.is_some(),
+            Self::ToggleMoveOver => view.is_moved_over,
+            Self::ToggleDetailed => view.shown == ShownGeometry::Detailed,
+            Self::ToggleSeeThrough => display.is_see_through,
+            Self::ToggleSplit => display.split.is_some(),
+            // Before the part is moved over it is the line of the split.
+            Self::ToggleWipe if !view.is_moved_over => display.split.is_some(),
+            Self::ToggleWipe => display.wipe.is_some(),
+            Self::ToggleEdges => display.has_edges,
+            Self::ToggleFeatureEdges => display.has_feature_edges,
+            Self::TogglePoints => display.has_points,
+            Self::ToggleDeviation => state.shown_colors() == ColorBy::Deviation,
+            Self::ToggleOverlap => state.shown_colors() == ColorBy::Overlap,
+            Self::ToggleUncertainty => state.shown_colors() == ColorBy::Uncertainty,
+            Self::ToggleSection => state.inspect.section.is_on,
+            Self::ToggleSectionClip => state.inspect.section.is_clipped,
+            Self::ToggleProjection => {
+                let projection = view.cameras.get(view.focus).projection;
+                matches!(projection, Projection::Perspective { .. })
+            }
+            Self::ToggleLink => view.are_linked,
+            Self::ToggleOrbitStyle => view.orbit_style == OrbitStyle::Free,
+            Self::ToggleGraphicsOnly => view.is_graphics_only,
+            Self::ToggleColumn => !view.is_column_folded(),
+            _ => return None,
+        })
     }
 
     /// The command the action stands for now; none if it is not enabled.

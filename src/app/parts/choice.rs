@@ -116,7 +116,7 @@ impl PartsState {
         if !work.document.knows_part(part) {
             return;
         }
-        let name = format!("Isolate {}", work.document.part_title(part));
+        let name = format!("Show only {}", work.document.part_title(part));
         self.change_part(work, name, part.role, |p| {
             let others = p.facts.parts.iter().map(|row| row.id);
             p.hidden = others.filter(|id| *id != part.id).collect();
@@ -138,7 +138,7 @@ impl PartsState {
     /// Models of which nothing is selected stay as they are.
     fn show_only_selected(&mut self, work: &mut Work<'_>) {
         let selected = self.selected.clone();
-        let name = format!("Isolate {}", self.selection_name(work));
+        let name = format!("Show only {}", self.selection_name(work));
         work.commit(name, |document| {
             for role in Role::ALL {
                 let is_kept = |id| selected.contains(&PartRef { role, id });
@@ -162,7 +162,7 @@ impl PartsState {
     }
 
     fn show_all(&mut self, work: &mut Work<'_>) {
-        work.commit("Show all parts", |document| {
+        work.commit("Show all", |document| {
             for role in Role::ALL {
                 if let Some(part) = document.parts.get_mut(role) {
                     part.hidden.clear();

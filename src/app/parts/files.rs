@@ -188,6 +188,7 @@ impl PartsState {
 
     fn close(&mut self, work: &mut Work<'_>, role: Role) -> Vec<Effect> {
         let name = format!("Close the {} part", role.word());
+        withdraw_diagnostics(work, role);
         let revision = work.history.next_revision();
         work.previews.drop_all();
         let mut n_dropped = None;
@@ -349,6 +350,7 @@ impl PartsState {
             facts::load_line(&part, &facts),
             Some(took),
         );
+        withdraw_diagnostics(work, role);
         if let Some((level, line)) = facts::diagnostics_line(&part) {
             work.log_at(level, LogStep::Load, Some(role), line, None);
         }
@@ -577,6 +579,14 @@ fn stamped_word(part: &Part) -> i32 {
     let name = part.loaded.file_name().to_lowercase();
     let has = |words: &[&str]| words.iter().any(|word| name.contains(word));
     i32::from(has(&["stamped", "stamping", "dynain", "formed"])) - i32::from(has(&["crash"]))
+}
+
+/// A file is gone or read anew: what was said of its content goes with it.
+fn withdraw_diagnostics(work: &mut Work<'_>, role: Role) {
+    let part = work.document.part(role);
+    if let Some((_, line)) = part.and_then(|part| facts::diagnostics_line(&part.loaded)) {
+        work.log.notices.withdraw_text(&line);
+    }
 }
 
 /// The list of recent files follows what the files are used as.

@@ -124,8 +124,10 @@ impl ViewState {
 
     fn turn_camera(&mut self, role: Role, scene: &Scene<'_>, turn: impl FnOnce(&mut Camera)) {
         self.remember_camera(role);
-        let is_fitted = self.is_fitted(role);
         let mut camera = *self.cameras.get(role);
+        // Turned by hand it is no longer fitted, but nothing was brought closer.
+        let fitted = *self.fitted.get(role);
+        let is_fitted = fitted.is_some_and(|fitted| fitted.height == camera.height);
         turn(&mut camera);
         self.set_camera(role, camera);
         // What was seen whole is seen whole from there too.

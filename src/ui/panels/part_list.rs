@@ -36,7 +36,9 @@ pub fn part_list_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) 
         let n = grouped(listed.len());
         caption(ui, format!("{n} of {} parts", grouped(n_parts)));
     }
-    rows_ui(ui, state, &listed, commands);
+    // A filter that leaves two of many takes no titles away.
+    let has_titles = n_parts > 2;
+    rows_ui(ui, state, &listed, has_titles, commands);
     chosen_ui(ui, state, commands);
 }
 
@@ -153,7 +155,13 @@ fn row_of<'a>(state: &'a AppState, &(role, index): &(Role, u32)) -> Option<Row<'
     })
 }
 
-fn rows_ui(ui: &mut Ui, state: &AppState, listed: &Listed, commands: &mut Vec<Command>) {
+fn rows_ui(
+    ui: &mut Ui,
+    state: &AppState,
+    listed: &Listed,
+    has_titles: bool,
+    commands: &mut Vec<Command>,
+) {
     let is_sorted = state.current_likeness().is_some();
     let columns = columns(ui, state, listed);
     let max_rows = if listed.len() > MANY {
@@ -166,7 +174,7 @@ fn rows_ui(ui: &mut Ui, state: &AppState, listed: &Listed, commands: &mut Vec<Co
     let wanted: Option<f32> = ui.data_mut(|data| data.remove_temp(offset));
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        if listed.len() > 2 {
+        if has_titles {
             columns.header_ui(ui, if is_sorted { "like" } else { "elem." });
         }
         let mut area = ScrollArea::vertical()
@@ -224,7 +232,7 @@ fn columns(ui: &Ui, state: &AppState, listed: &Listed) -> Columns {
             .x
     };
     let id = width(largest(&|row| row.summary.id.to_string().len()), body);
-    let count = width(largest(&|row| count_text(row).len()), small).max(30.0);
+    let count = width(largest(&|row| count_text(row, state).len()), small).max(30.0);
     let room = ui.available_rect_before_wrap();
     // The scroll bar of a long list floats over the edge of the ticks otherwise.
     let bar = if listed.len() > MAX_ROWS as usize {

@@ -5,7 +5,7 @@ use egui::{
 };
 
 use super::section::elided_middle;
-use crate::app::{AppState, Command, LikeWhat, Part, PartCommand, PartRef, ViewCommand};
+use crate::app::{Action, AppState, Command, LikeWhat, Part, PartCommand, PartRef, ViewCommand};
 use crate::formats::PartSummary;
 use crate::role::Role;
 use crate::text::{counted, whole_percent};
@@ -32,7 +32,20 @@ pub struct Row<'a> {
     pub likeness: Option<f64>,
 }
 
-impl Row<'_> {
+impl<'a> Row<'a> {
+    /// A part of a deck, wherever it was pointed at.
+    pub fn of(state: &'a AppState, at: PartRef) -> Option<Self> {
+        let part = state.document.part(at.role)?;
+        let index = part.facts.parts.iter().position(|row| row.id == at.id)?;
+        Some(Self {
+            role: at.role,
+            part,
+            summary: &part.facts.parts[index],
+            index,
+            likeness: None,
+        })
+    }
+
     /// Its name in commands.
     pub fn at(&self) -> PartRef {
         PartRef {
@@ -216,11 +229,17 @@ fn clicks(ui: &Ui, response: &Response, at: PartRef, commands: &mut Vec<Command>
     }
 }
 
-fn menu_ui(ui: &mut Ui, row: &Row<'_>, state: &AppState, commands: &mut Vec<Command>) {
+/// What can be done with a part, in the list and in 3D.
+pub fn menu_ui(ui: &mut Ui, row: &Row<'_>, state: &AppState, commands: &mut Vec<Command>) {
     let at = row.at();
     let is_visible = row.part.is_visible(at.id);
     let is_used = state.is_part_used(at);
     let like = Some(LikeWhat::Part(at));
+    if ui.button(Action::FocusSelection.row().label).clicked() {
+        commands.push(PartCommand::Select(Some(at)).into());
+        commands.push(ViewCommand::Focus(state.camera_of(at.role)).into());
+        ui.close();
+    }
     let groups: [&[(&str, PartCommand)]; 3] = [
         &[
             (
@@ -333,17 +352,18 @@ fn paint(ui: &Ui, rect: Rect, row: &Row<'_>, columns: &Columns, state: &AppState
             palette.secondary,
         );
     };
-    right(columns.count, count_text(row));
+    right(columns.count, count_text(row, state));
     let thickness = row.summary.thickness;
     if let Some(thickness) = thickness.filter(|_| columns.thickness.span() > 0.0) {
         right(columns.thickness, format!("{thickness:.2}"));
     }
 }
 
-/// Elements, or the likeness while the list is sorted by it.
-pub fn count_text(row: &Row<'_>) -> String {
+/// Elements, or the likeness while the list is sorted by it; what it is compared with has none.
+pub fn count_text(row: &Row<'_>, state: &AppState) -> String {
     match row.likeness {
         Some(likeness) => whole_percent(likeness),
+        None if state.current_likeness().is_some() => String::new(),
         None => grouped(row.summary.n_shells + row.summary.n_solids),
     }
 }

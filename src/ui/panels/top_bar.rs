@@ -165,7 +165,11 @@ fn item_ui(ui: &mut Ui, state: &AppState, row: &ActionRow, commands: &mut Vec<Co
         (Action::Redo, _, Some(name)) => format!("Redo “{name}”"),
         _ => row.label.to_owned(),
     };
-    let mut button = Button::new(label);
+    let is_on = action.is_on(state);
+    let mut button = match is_on {
+        Some(is_on) => Button::new(ticked(&label, is_on)).selected(is_on),
+        None => Button::new(label.as_str()),
+    };
     if let Some(shortcut) = row.shortcut() {
         button = button.shortcut_text(shortcut.to_string());
     }
@@ -174,9 +178,20 @@ fn item_ui(ui: &mut Ui, state: &AppState, row: &ActionRow, commands: &mut Vec<Co
         Ok(()) => response.on_hover_text(row.tooltip),
         Err(reason) => response.on_disabled_hover_text(format!("{}\n{reason}", row.tooltip)),
     };
+    // The tick is no part of the name.
+    let response = response.accessible_name(&label);
     if response.clicked() {
         commands.extend(action.command(state));
         ui.close();
+    }
+}
+
+/// The name of what can be on or off, with its state.
+fn ticked(label: &str, is_on: bool) -> String {
+    if is_on {
+        format!("{label}  ✔")
+    } else {
+        label.to_owned()
     }
 }
 

@@ -8,6 +8,7 @@ use crate::app::{
     BottomTab, ColorBy, Command, InspectCommand, MapCommand, PartCommand, PartRef, ViewCommand,
 };
 use crate::role::Role;
+use crate::ui::panels::part_row::{Row, menu_ui};
 
 /// What a window remembers about the pointer.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -110,17 +111,15 @@ impl Pointing {
             entry(ui, "Hide", commands, hide);
             ui.separator();
         }
-        if let Some(part) = self.menu.as_ref().and_then(|hit| hit.part) {
-            ui.weak(format!("Part {}", part.id));
-            entry(ui, "Hide", commands, PartCommand::SetVisible(part, false));
-            entry(ui, "Hide all others", commands, PartCommand::ShowOnly(part));
-            if ui.button("Focus").clicked() {
-                commands.push(PartCommand::Select(Some(part)).into());
-                commands.push(ViewCommand::Focus(role).into());
+        let part = self.menu.as_ref().and_then(|hit| hit.part);
+        match part.and_then(|part| Row::of(frame.state, part)) {
+            Some(row) => {
+                ui.weak(row.name());
+                menu_ui(ui, &row, frame.state, commands);
+                ui.separator();
             }
-            ui.separator();
+            None => entry(ui, "Show all", commands, PartCommand::ShowAll),
         }
-        entry(ui, "Show all parts", commands, PartCommand::ShowAll);
         entry(ui, "Fit", commands, ViewCommand::FitAll(role));
         entry(
             ui,

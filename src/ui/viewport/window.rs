@@ -70,8 +70,8 @@ impl Window {
     }
 
     /// A match may take the stamped part far away or turn it over. Then both windows show the parts
-    /// from the same side. Where another step does so, the camera goes with the part, so that it looks
-    /// as it did.
+    /// from the same side. Where another step takes it away, the camera goes with the part, so that it
+    /// looks as it did.
     pub fn follow_part(
         &mut self,
         role: Role,
@@ -98,6 +98,10 @@ impl Window {
                 world_from_view: side,
                 ..camera
             }))
+        } else if is_inside {
+            // It turned in its place: that is what is to be seen, so the camera does not turn with it.
+            let is_fitted = state.view.is_fitted(role);
+            is_fitted.then_some(Following::Beside(camera))
         } else if state.view.are_linked {
             // Turning the camera would turn the other window's too.
             Some(Following::Beside(camera))
