@@ -86,6 +86,47 @@ fn reassess(window: &mut Window, change: impl FnOnce(&mut Assessment)) {
 }
 
 #[test]
+fn the_larger_part_is_named_with_how_many_times_it_is_as_large() {
+    let mut window = Window::with_both();
+    window.act(Action::MatchOrStop);
+    for (ratio, words) in [
+        (
+            0.001,
+            "The stamped part is 1000 times as large as the crash part.",
+        ),
+        (
+            1000.0,
+            "The crash part is 1000 times as large as the stamped part.",
+        ),
+    ] {
+        reassess(&mut window, |assessment| {
+            assessment.verdict = Verdict::Poor;
+            assessment.scale_check.size_ratio = ratio;
+            assessment.scale_check.unit = shapematch::registration::guess_unit(ratio);
+        });
+        assert_eq!(window.state.causes()[0].evidence, words);
+    }
+}
+
+#[test]
+fn the_part_of_the_other_hand_comes_before_a_mapping() {
+    let mut window = Window::with_both_and_no_rivals();
+    window.act(Action::MatchOrStop);
+    let score_ratio = 0.7;
+    for (reason, is_better) in [
+        (Reason::OppositeHand { score_ratio }, true),
+        // Its own mirror image is no other part.
+        (Reason::NearMirrorImage { score_ratio }, false),
+    ] {
+        reassess(&mut window, |assessment| {
+            assessment.verdict = Verdict::Poor;
+            assessment.reasons = vec![reason];
+        });
+        assert_eq!(window.state.is_other_hand_better(), is_better);
+    }
+}
+
+#[test]
 fn errors_of_the_reader_lead_to_the_diagnostics() {
     let mut window = Window::with_both();
     window.act(Action::MatchOrStop);

@@ -17,6 +17,8 @@ const MOST: usize = 3;
 /// Less overlap of the better covered part is little.
 const LITTLE_OVERLAP: f64 = 0.6;
 
+const OTHER_HAND: &str = "Opposite-hand part";
+
 /// A likely cause of a weak or failed match.
 #[derive(Debug, Clone)]
 pub struct Cause {
@@ -54,6 +56,18 @@ impl AppState {
             self.read_cause(assessment),
         ];
         found.into_iter().flatten().take(MOST).collect()
+    }
+
+    /// True where the part of the other hand fits better and can be matched: that comes before all else.
+    pub fn is_other_hand_better(&self) -> bool {
+        let result = self.document.current_result();
+        let is_better = result.is_some_and(|result| {
+            let mut reasons = result.run.assessment.reasons.iter();
+            reasons.any(|reason| matches!(reason, Reason::OppositeHand { .. }))
+        });
+        let causes = if is_better { self.causes() } else { Vec::new() };
+        let first = causes.first();
+        first.is_some_and(|cause| cause.title == OTHER_HAND && cause.remedy.is_some())
     }
 
     /// True while it is asked whether the parts are in different units and the match says so too: then
@@ -158,10 +172,7 @@ impl AppState {
     fn units_cause(&self, assessment: &Assessment) -> Option<Cause> {
         let check = &assessment.scale_check;
         let evidence = match (&check.unit, self.unit_hint()) {
-            (Some(_), _) => format!(
-                "The crash part is {} times as large as the stamped part.",
-                length(check.size_ratio)
-            ),
+            (Some(_), _) => larger_part(check.size_ratio),
             // Among the parts of a whole model sizes say nothing, but the files do.
             (None, Some(hint)) => sentence(&hint.text()),
             (None, None) => {
@@ -186,7 +197,7 @@ impl AppState {
         })?;
         let hand = self.document.recipe.settings.hand;
         Some(Cause {
-            title: "Opposite-hand part".to_owned(),
+            title: OTHER_HAND.to_owned(),
             evidence: format!("The other hand fits better: {}.", error_beside(ratio)),
             remedy: self.retry("Match the opposite hand", |recipe| {
                 recipe.settings.hand = match hand {
@@ -303,6 +314,19 @@ impl AppState {
 }
 
 /// What is wrong where all parts of a crash model are matched together.
+/// Which part is how many times as large, from the size of the crash part over that of the stamped one.
+fn larger_part(size_ratio: f64) -> String {
+    let ([larger, other], times) = if size_ratio < 1.0 {
+        (["stamped", "crash"], size_ratio.recip())
+    } else {
+        (["crash", "stamped"], size_ratio)
+    };
+    format!(
+        "The {larger} part is {} times as large as the {other} part.",
+        length(times)
+    )
+}
+
 fn matched_as_one(n_parts: usize) -> String {
     format!("{n_parts} crash parts are matched as one")
 }

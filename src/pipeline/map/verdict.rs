@@ -262,13 +262,27 @@ fn distance(run: &MapRun, lengths: Lengths) -> CheckRecord {
         found: worst.map_or_else(|| "–".to_owned(), |worst| lengths.of(apart(worst))),
         limit: match run.recipe.options.max_distance {
             Some(reach) => format!("at most {}", lengths.of(reach / 2.0)),
-            None => "half an element".to_owned(),
+            None => half_an_element(run, worst, lengths),
         },
         is_met: worst.map(|_| mapped.n_distant == 0),
         reason: None,
         picture: CheckPicture::Distance,
         worst,
     }
+}
+
+/// What each element is held against, with its length at the one that is farthest.
+fn half_an_element(run: &MapRun, worst: Option<usize>, lengths: Lengths) -> String {
+    let size = worst.and_then(|element| {
+        let partner = run.mapped.elements[element].partner?;
+        let source = run.sources.get(partner.source as usize)?;
+        let of_source = source.mesh.size(partner.element as usize);
+        Some(run.target.mesh.size(element).max(of_source))
+    });
+    let at_worst = size.map_or_else(String::new, |size| {
+        format!(", {} there", lengths.of(size / 2.0))
+    });
+    format!("half an element{at_worst}")
 }
 
 fn confidence(run: &MapRun) -> CheckRecord {

@@ -188,9 +188,7 @@ impl Report<'_> {
                 ", for column vectors, lengths in " (unit) ":"
             }
             p.math {
-                i { "p" } sub { "crash" } " = "
-                @if pose.scale != 1.0 { i { "c" } " · " }
-                i { "R" } " · " i { "p" } sub { "stamped" } " + " i { "t" }
+                "crash = " i { "c" } " · " i { "R" } " · stamped + " i { "t" }
             }
             (block("the matrix by rows", &MatrixForm::Rows.write(&motion), false))
             (self.motion_table(unit))

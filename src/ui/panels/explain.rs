@@ -6,9 +6,14 @@ use crate::app::{AppState, Cause, Command};
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{card, paragraph};
 
-/// The causes of a weak result, within its card.
-pub fn causes_ui(ui: &mut Ui, causes: Vec<Cause>, commands: &mut Vec<Command>) {
-    for cause in causes {
+/// The causes of a weak result, within its card; the remedy of the first one may be what is to be done.
+pub fn causes_ui(
+    ui: &mut Ui,
+    causes: Vec<Cause>,
+    is_first_meant: bool,
+    commands: &mut Vec<Command>,
+) {
+    for (place, cause) in causes.into_iter().enumerate() {
         ui.add_space(4.0);
         ui.separator();
         let title = RichText::new(cause.title).color(Palette::of(ui).text);
@@ -17,7 +22,14 @@ pub fn causes_ui(ui: &mut Ui, causes: Vec<Cause>, commands: &mut Vec<Command>) {
         let Some((label, remedy)) = cause.remedy else {
             continue;
         };
-        let button = Button::new(label).min_size(vec2(0.0, ROW));
+        let palette = Palette::of(ui);
+        let button = if is_first_meant && place == 0 {
+            let label = RichText::new(label).color(palette.on_accent);
+            Button::new(label).fill(palette.accent)
+        } else {
+            Button::new(label)
+        };
+        let button = button.min_size(vec2(0.0, ROW));
         if ui.add(button).clicked() {
             commands.extend(remedy);
         }
@@ -37,6 +49,6 @@ pub fn failure_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             node.set_live(egui::accesskit::Live::Polite);
         });
         paragraph(ui, format!("The part stays where it was: {message}."));
-        causes_ui(ui, state.failure_causes(), commands);
+        causes_ui(ui, state.failure_causes(), false, commands);
     });
 }

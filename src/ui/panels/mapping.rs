@@ -146,7 +146,8 @@ fn run_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let is_made = state.document.current_mapping().is_some();
     let is_done = is_made && !state.document.is_mapping_out_of_date();
     let is_matched = state.document.current_result().is_some();
-    let look = if is_running || is_done || !is_matched {
+    let has_better = state.is_other_hand_better();
+    let look = if is_running || is_done || !is_matched || has_better {
         Look::Plain
     } else {
         Look::Primary
@@ -214,11 +215,10 @@ fn result_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
     doubtful_ui(ui, state, commands);
     unmapped_ui(ui, state, commands);
     other_ui(ui, state, commands);
-    caption(ui, "Write");
+    caption(ui, "Save");
     ui.horizontal_wrapped(|ui| {
         // All five have room in one row.
-        ui.spacing_mut().button_padding.x = 5.0;
-        ui.spacing_mut().item_spacing.x = 3.0;
+        ui.spacing_mut().button_padding.x = 4.0;
         for (action, label) in [
             (Action::SaveMappedDeck, "Deck…"),
             (Action::SaveMappedPart, "Part…"),
@@ -231,7 +231,7 @@ fn result_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
         }
     });
     if state.jobs.is_exporting() {
-        secondary(ui, "Writing …  Esc gives it up");
+        secondary(ui, "Saving …  Esc gives it up");
     }
 }
 
@@ -397,7 +397,7 @@ fn lines(record: &MapRecord, lengths: Lengths) -> Vec<String> {
             if range > 0.0 {
                 let share = percent(p95 / range);
                 lines.push(format!(
-                    "There and back: 95 % within {share} of the {name}'s range"
+                    "Mapped back onto the stamped part: 95 % differ in {name} by less than {share} of its range"
                 ));
             }
         }

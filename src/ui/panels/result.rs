@@ -10,7 +10,7 @@ use crate::assess::{Ambiguity, Coverage, OneSided, Reason};
 use crate::jobs::Stamp;
 use crate::registration::{group_starts, limits};
 use crate::report::distances::{OVERLAP_HELP, OVERLAP_SPREAD};
-use crate::report::{PoseRecord, few_agree_words, number, start_counts};
+use crate::report::{DIRECTION, PoseRecord, few_agree_words, number, start_counts};
 use crate::role::{PerRole, Role};
 use crate::settings::setting;
 use crate::text::{capital, fixed, sentence, vector, whole_percent};
@@ -44,7 +44,7 @@ pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 figures_ui(ui, state, result);
                 alternatives_ui(ui, state, result, commands);
             }
-            explain::causes_ui(ui, state.causes(), commands);
+            explain::causes_ui(ui, state.causes(), state.is_other_hand_better(), commands);
         } else {
             outdated_ui(ui, state, result, commands);
         }
@@ -418,7 +418,7 @@ fn matrix_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     egui::CollapsingHeader::new("Matrix, stamped → crash")
         .id_salt("matrix")
         .show_unindented(ui, |ui| {
-            caption(ui, "p_crash = R · p_stamped + t, column vectors");
+            caption(ui, DIRECTION);
             grid_ui(ui, &pose.to_rows());
             moved_ui(ui, state);
         });
@@ -473,10 +473,14 @@ fn moved_ui(ui: &mut Ui, state: &AppState) {
     };
     let center = part.bounds().center();
     let record = PoseRecord::new(pose, part.loaded.sample_node(), &center);
-    let [x, y, z] = record.center_move.map(|x| state.lengths().number(x));
+    let lengths = state.lengths();
+    let (unit, [x, y, z]) = (
+        lengths.suffix(),
+        record.center_move.map(|x| lengths.number(x)),
+    );
     let turn = record.rotation_axis_angle;
     let axis = vector(turn.axis, 3);
-    paragraph(ui, format!("The centre moves by ({x}, {y}, {z})."));
+    paragraph(ui, format!("The centre moves by ({x}, {y}, {z}){unit}."));
     paragraph(
         ui,
         format!(
@@ -486,7 +490,7 @@ fn moved_ui(ui: &mut Ui, state: &AppState) {
     );
     if let Some(node) = record.sample_node {
         let (from, to) = (vector(node.stamped, 3), vector(node.crash, 3));
-        paragraph(ui, format!("Sample node {}: {from} → {to}", node.id));
+        paragraph(ui, format!("Sample node {}: {from} → {to}{unit}", node.id));
     }
     caption(
         ui,
