@@ -109,19 +109,12 @@ pub fn length(value: f64) -> String {
     // What rounding leaves of nothing is nothing.
     let value = if value.abs() < NOTHING { 0.0 } else { value };
     let magnitude = value.abs();
-    let decimals = if magnitude >= 100.0 || value == 0.0 {
-        0
-    } else if magnitude >= 10.0 {
-        1
-    } else if magnitude >= 1.0 {
-        2
-    } else if magnitude >= 0.1 {
-        3
-    } else if magnitude >= 1e-3 {
-        4
-    } else {
-        // A thickness or a distance in metres.
-        7
+    let from = [100.0, 10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4];
+    let decimals = match from.iter().position(|from| magnitude >= *from) {
+        Some(decimals) => decimals,
+        None if value == 0.0 => 0,
+        // Few thicknesses and distances in metres are smaller.
+        None => MOST_DECIMALS,
     };
     fixed(value, decimals)
 }
@@ -292,11 +285,10 @@ impl Lengths {
             .unwrap_or(usual)
     }
 
-    /// A length beside the limit it is held against: `0.71 of 3.89 mm`.
+    /// A length with the limit it is held against: `0.710 mm (limit 3.89 mm)`.
     pub fn within(self, value: f64, limit: f64) -> String {
         let [value, limit] = self.compared([value, limit]);
-        let value = value.strip_suffix(self.suffix()).unwrap_or(&value);
-        format!("{value} of {limit}")
+        format!("{value} (limit {limit})")
     }
 
     /// The number with its sign and the unit: `+0.381 mm`.
@@ -357,13 +349,13 @@ mod tests {
     #[test]
     fn lengths_have_three_digits() {
         let read = [0.041_23, 1.349, -128.4, 0.0, 0.000_381].map(length);
-        assert_eq!(read, ["0.0412", "1.35", "−128", "0", "0.0003810"]);
+        assert_eq!(read, ["0.0412", "1.35", "−128", "0", "0.000381"]);
         let lengths = Lengths::new(Some(LengthUnit::Millimeter));
         assert_eq!(lengths.of(0.3806), "0.381 mm");
         assert_eq!(lengths.axis("distance"), "distance, mm");
         assert_eq!(Lengths::default().of(0.3806), "0.381");
         let tiny = [5.5e-6, -0.0009, 0.001, 1e-9].map(|value| lengths.of(value));
-        assert_eq!(tiny, ["< 0.001 mm", "< 0.001 mm", "0.0010 mm", "0 mm"]);
+        assert_eq!(tiny, ["< 0.001 mm", "< 0.001 mm", "0.00100 mm", "0 mm"]);
         assert_eq!(lengths.signed_of(0.0003), "< 0.001 mm");
         let bounds = [0.0003, 0.3806].map(|value| lengths.bound(value));
         assert_eq!(bounds, ["0.001 mm", "0.381 mm"]);
@@ -372,10 +364,10 @@ mod tests {
     #[test]
     fn a_length_stands_beside_its_limit() {
         let lengths = Lengths::new(Some(LengthUnit::Millimeter));
-        assert_eq!(lengths.within(0.71, 3.89), "0.710 of 3.89 mm");
-        assert_eq!(lengths.within(0.0002, 0.2), "< 0.001 of 0.200 mm");
-        assert_eq!(lengths.within(15.04, 15.0), "15.04 of 15.00 mm");
-        assert_eq!(Lengths::default().within(0.71, 3.89), "0.710 of 3.89");
+        assert_eq!(lengths.within(0.71, 3.89), "0.710 mm (limit 3.89 mm)");
+        assert_eq!(lengths.within(0.0002, 0.2), "< 0.001 mm (limit 0.200 mm)");
+        assert_eq!(lengths.within(15.04, 15.0), "15.04 mm (limit 15.00 mm)");
+        assert_eq!(Lengths::default().within(0.71, 3.89), "0.710 (limit 3.89)");
     }
 
     #[test]

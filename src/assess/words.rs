@@ -51,7 +51,7 @@ impl Reason {
     pub fn words(&self, lengths: Lengths) -> String {
         match self {
             Self::OppositeHand { score_ratio } => format!(
-                "looks like a part of the other hand: with that hand, {}; match with it, or choose the \
+                "looks like the opposite-hand part ({} with that hand): match with it, or choose the \
                  other part",
                 error_beside(*score_ratio)
             ),
@@ -302,7 +302,7 @@ impl ShapeKind {
 }
 
 impl ShapeStatement {
-    /// "same part, deformed: bend and twist 0.63 of 5.00 mm, remainder 0.13 of 1.00 mm".
+    /// "same part, deformed: bend and twist 0.630 mm (limit 5.00 mm), remainder 0.130 mm (limit 1.00 mm)".
     pub fn words(&self, lengths: Lengths) -> String {
         let label = self.kind.label();
         if !self.remainder.is_finite() {

@@ -162,6 +162,10 @@ fn detail(role: Role, part: &Part, state: &AppState) -> String {
         Some(known) => text += &format!(" · {}", known.units.label()),
         None => text += " · unit unknown",
     }
+    // Before what a narrow column may cut off.
+    if part.length_factor() != 1.0 {
+        text += &format!(" · lengths × {}", tidy_factor(part.length_factor()));
+    }
     if report.n_parts > 1 {
         text += &format!(
             " · {} of {} parts",
@@ -171,9 +175,6 @@ fn detail(role: Role, part: &Part, state: &AppState) -> String {
     }
     if let Some(thickness) = part.facts.thickness {
         text += &format!(" · t {}", state.lengths_of(role).of(thickness));
-    }
-    if part.length_factor() != 1.0 {
-        text += &format!(" · lengths × {}", tidy_factor(part.length_factor()));
     }
     if report.n_diagnostics > 0 {
         text += &format!(" · ⚠ {}", report.n_diagnostics);

@@ -158,6 +158,7 @@ fn position_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let moved: [f64; 3] = (center - pivot).into();
     let lengths = state.lengths();
     let unit = lengths.suffix();
+    axes_row_ui(ui, unit);
     for (row, values) in [(CENTER, at), (CENTER_MOVE, moved)] {
         if let Some((axis, by, value)) = fields_ui(
             ui,
@@ -168,8 +169,7 @@ fn position_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ) {
             let mut crash_from_stamped: Similarity = pose;
             crash_from_stamped.translation[axis.index()] += by;
-            let name = row.spoken.trim_end_matches(SINCE_LOADING);
-            let name = format!("{name} {} {}{unit}", axis.letter(), fixed(value, 3));
+            let name = format!("{} {} {}{unit}", row.step, axis.letter(), fixed(value, 3));
             commands.push(set_pose(crash_from_stamped, name));
         }
     }
@@ -187,7 +187,7 @@ fn position_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let mut turns = turns;
         turns[axis.index()] += by;
         let crash_from_stamped = with_turns_deg(&pose, turns, &pivot);
-        let name = format!("Rotation {} {}°", axis.letter(), fixed(value, 3));
+        let name = format!("{} {} {}°", ROTATION.step, axis.letter(), fixed(value, 3));
         commands.push(set_pose(crash_from_stamped, name));
     }
 }
@@ -204,25 +204,56 @@ fn set_pose(crash_from_stamped: Similarity, name: String) -> Command {
 struct Three {
     label: &'static str,
     spoken: &'static str,
+    /// What the step is called when one of them is typed.
+    step: &'static str,
     help: &'static str,
 }
 
-const SINCE_LOADING: &str = " since loading,";
 const CENTER: Three = Three {
     label: "Centre",
     spoken: "Centre",
+    step: "Centre",
     help: "In the axes and the unit of the crash part",
 };
 const CENTER_MOVE: Three = Three {
     label: "Moved by",
     spoken: "Move of centre since loading,",
+    step: "Move by",
     help: "In the axes and the unit of the crash part; t of the matrix is the move of the origin",
 };
 const ROTATION: Three = Three {
     label: "Rotation",
     spoken: "Rotation since loading,",
+    step: "Rotation",
     help: "In degrees, about x, then y, then z of the crash part",
 };
+
+/// Above the three columns of numbers: their axes, and what they are in.
+fn axes_row_ui(ui: &mut Ui, unit: &str) {
+    let units = match unit.trim() {
+        "" => "°".to_owned(),
+        unit => format!("{unit}, °"),
+    };
+    form_row(ui, &units, LABEL, |ui| {
+        tighten(ui);
+        let width = column_width(ui);
+        for axis in Axis::ALL {
+            let (rect, _) = ui.allocate_exact_size(vec2(width, 16.0), egui::Sense::hover());
+            ui.painter().text(
+                rect.center(),
+                egui::Align2::CENTER_CENTER,
+                axis.letter(),
+                TextStyle::Small.resolve(ui.style()),
+                Palette::of(ui).secondary,
+            );
+        }
+    });
+}
+
+/// The width of one of three fields beside each other.
+fn column_width(ui: &Ui) -> f32 {
+    (ui.available_width() - 8.0) / 3.0
+}
 
 /// Three numbers in a row; the axis that was typed at, by how much it changed, and its new value.
 fn fields_ui(
@@ -236,7 +267,7 @@ fn fields_ui(
     form_row(ui, row.label, LABEL, |ui| {
         tighten(ui);
         ui.style_mut().drag_value_text_style = TextStyle::Small;
-        let width = (ui.available_width() - 8.0) / 3.0;
+        let width = column_width(ui);
         // As wide while it is typed in.
         ui.spacing_mut().interact_size.x = width;
         for axis in Axis::ALL {

@@ -117,7 +117,7 @@ fn head_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison, commands: &mu
                 commands.push(ExportCommand::CopyText { text, what }.into());
             }
             let sign = if comparison.deviation.is_signed {
-                "full meshes · + the stamped part lies in front of the crash part's normals"
+                "full meshes · + in front of the crash part, on the side of its normals"
             } else {
                 "full meshes · without sign: the crash part has no clear sides"
             };

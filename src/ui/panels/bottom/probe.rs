@@ -202,7 +202,7 @@ fn profile_ui(ui: &mut Ui, state: &AppState, probe: &ProbeReport, size: egui::Ve
     let values = stamped.iter().chain(&crash).map(|point| point[0]);
     let name = with_unit(state, by);
     let Some(range) = charts::margined(values) else {
-        caption(ui, format!("{name} over T: no values"));
+        caption(ui, format!("{name} through the thickness: no values"));
         return;
     };
     ui.vertical(|ui| profile_plot(ui, &name, [stamped, crash], (range, size)));
@@ -217,7 +217,7 @@ fn profile_plot(
 ) {
     let palette = Palette::of(ui);
     let before = ui.cursor().top();
-    caption(ui, format!("{name} over T"));
+    caption(ui, format!("{name} through the thickness"));
     let size = vec2(
         size.x - 16.0,
         (size.y - (ui.cursor().top() - before)).max(40.0),

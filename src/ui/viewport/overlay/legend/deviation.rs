@@ -48,13 +48,13 @@ pub(super) fn show(
     let before = over.frame.state.view.display.coloring;
     let mut coloring = before;
     if room.is_full {
-        side_words(ui, over, "on the crash normal side", true);
+        side_words(ui, over, "in front of crash", true);
     }
     limit_field(ui, over, scale, Limit::Upper, &mut coloring);
     bars(ui, over, (scale, stats), room.bar, &mut coloring);
     limit_field(ui, over, scale, Limit::Lower, &mut coloring);
     if room.is_full {
-        side_words(ui, over, "opposite", false);
+        side_words(ui, over, "behind crash", false);
     }
     ui.add_space(2.0);
     tolerance(ui, over, scale, stats, &mut coloring);
@@ -474,7 +474,7 @@ fn tolerance(
     stats: &DeviationStats,
     coloring: &mut Coloring,
 ) {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let inside = percent(stats.share_inside(scale.tolerance));
         ui.label(RichText::new(inside).size(15.0).color(over.frame.look.text));
         ui.label(RichText::new("within ±").size(12.0));
@@ -516,10 +516,12 @@ fn numbers(ui: &mut Ui, over: &Overlay<'_>, stats: &DeviationStats) {
     let lengths = over.frame.state.lengths();
     let (least, most) = (lengths.signed(stats.min), lengths.signed_of(stats.max));
     let mean = lengths.signed(stats.mean);
-    ui.label(small(format!("mean {mean}, {least} to {most}")));
+    // In metres they are longer than the legend is wide.
+    let wrapped = |text: String| egui::Label::new(small(text)).wrap();
+    ui.add(wrapped(format!("mean {mean}, {least} to {most}")));
     for (measure, value) in [(COMPARED_RMS, stats.rms), (COMPARED_P95, stats.p95)] {
         let text = format!("{} {}", measure.name, lengths.of(value));
-        ui.label(small(text)).on_hover_text(measure.help);
+        ui.add(wrapped(text)).on_hover_text(measure.help);
     }
     let alone = stats.class_shares[2];
     if alone > 5e-4 {

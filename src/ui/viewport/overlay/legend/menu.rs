@@ -25,7 +25,7 @@ pub(super) enum Values {
 /// The button with the menu of maps.
 pub(super) fn maps(ui: &mut Ui, over: &Overlay<'_>, values: Values, commands: &mut Vec<Command>) {
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    let button = Button::new(RichText::new("Map").size(11.5)).small();
+    let button = Button::new(RichText::new("Colours").size(11.5)).small();
     let before = over.frame.state.view.display.coloring;
     let mut coloring = before;
     let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
