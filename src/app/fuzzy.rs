@@ -29,6 +29,7 @@ const SYNONYMS: &[&[&str]] = &[
     &["sweep", "tables"],
     &["diagnostics", "warnings"],
     &["map", "transfer"],
+    &["show only", "isolate"],
 ];
 
 /// Least points per letter of a find in a label; scattered letters have fewer.

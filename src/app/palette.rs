@@ -12,7 +12,9 @@ use crate::colormap::ColorMap;
 use crate::pipeline::names::file_name;
 use crate::pipeline::outputs::{MeshOutput, Output};
 use crate::report::{CardForm, MatrixForm};
+use crate::role::Role;
 use crate::text::inside;
+use crate::units::Units;
 
 /// Commands that are remembered as used last.
 const MAX_RECENT: usize = 6;
@@ -175,6 +177,11 @@ impl AppState {
             by_hand,
             ViewCommand::ShowMoveByHand,
         ));
+        entries.extend(
+            Role::ALL
+                .into_iter()
+                .flat_map(|role| self.units_entries(role)),
+        );
         let locked = self.jobs.is_unlocked().err().map(|reason| reason.0);
         let recent = self.settings.recent.iter();
         entries.extend(recent.map(|path| PaletteEntry {
@@ -182,9 +189,9 @@ impl AppState {
             ..file("Open", path, locked)
         }));
         let sessions = self.project.sessions.iter().map(|session| PaletteEntry {
-            label: format!("Restore {}", session.title),
+            label: format!("Recover {}", session.title),
             does: does(ProjectCommand::Restore(session.path.clone())),
-            ..file("Restore", &session.path, locked)
+            ..file("Recover", &session.path, locked)
         });
         entries.extend(sessions);
         entries.extend(Theme::ALL.map(|theme| {
@@ -193,6 +200,26 @@ impl AppState {
             PaletteEntry::plain(label, group, help, Does::Theme(theme))
         }));
         entries
+    }
+
+    /// Every unit that a file may be in.
+    fn units_entries(&self, role: Role) -> impl Iterator<Item = PaletteEntry> {
+        let possible = self.document.has_part(role);
+        let possible = possible.and_then(|()| self.jobs.is_unlocked());
+        let reason = possible.err().map(|reason| reason.0);
+        Units::all().map(move |units| PaletteEntry {
+            label: format!("Units of the {} file: {}", role.word(), units.label()),
+            group: "Units",
+            help: "What the lengths of the file are in".to_owned(),
+            keys: String::new(),
+            reason,
+            is_recent: false,
+            letters: Vec::new(),
+            does: does(FileCommand::SetUnits {
+                role,
+                units: Some(units),
+            }),
+        })
     }
 
     fn color_entry(&self, by: ColorBy) -> PaletteEntry {
@@ -309,6 +336,18 @@ mod tests {
             }
             assert_eq!(state.settings.theme, theme);
             assert_eq!(state.palette("")[0].label, entry.label);
+        }
+    }
+
+    #[test]
+    fn the_units_of_both_files_are_commands() {
+        let state = AppState::default();
+        let found = state.palette("units");
+        for role in Role::ALL {
+            let label = format!("Units of the {} file: mm", role.word());
+            let entry = found.iter().find(|entry| entry.label == label);
+            let reason = entry.expect(&label).reason;
+            assert!(reason.is_some(), "no part is loaded");
         }
     }
 

@@ -459,8 +459,14 @@ fn prompt_content(ui: &mut egui::Ui, prompt: &mut Prompt) -> Option<PromptAnswer
         (prompt.note, prompt.missing) = (None, None);
         prompt.names.clear();
     }
+    let lacks_folder = prompt.missing.is_some();
     if field.is_entered {
-        answer = Some(PromptAnswer::Take);
+        // With the folder missing there is one way on.
+        answer = Some(if lacks_folder {
+            PromptAnswer::Create
+        } else {
+            PromptAnswer::Take
+        });
     } else if field.wants_completion {
         answer = Some(PromptAnswer::Complete);
     }
@@ -471,14 +477,15 @@ fn prompt_content(ui: &mut egui::Ui, prompt: &mut Prompt) -> Option<PromptAnswer
     if let Some(note) = &prompt.note {
         ui.horizontal_wrapped(|ui| {
             ui.label(egui::RichText::new(note).color(Palette::of(ui).check));
-            if prompt.missing.is_some() && ui.button("Create").clicked() {
+            if lacks_folder && ui.button("Create").clicked() {
                 answer = Some(PromptAnswer::Create);
             }
         });
     }
     ui.horizontal(|ui| {
         let is_typed = !prompt.text.trim().is_empty();
-        let take = ui.add_enabled_ui(is_typed, |ui| large_button(ui, verb, true));
+        let can_take = is_typed && !lacks_folder;
+        let take = ui.add_enabled_ui(can_take, |ui| large_button(ui, verb, true));
         if take.inner.clicked() {
             answer = Some(PromptAnswer::Take);
         }

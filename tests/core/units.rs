@@ -95,6 +95,20 @@ fn what_the_files_say_is_asked_about_once_and_is_one_undo_step() {
 }
 
 #[test]
+fn units_are_set_from_the_command_search() {
+    let mut window = Window::new();
+    window.open("says_mm.k", Role::Crash);
+    let entry = window
+        .state
+        .palette("units of the crash file: cm")
+        .remove(0);
+    for command in entry.commands(&window.state) {
+        window.apply(command);
+    }
+    assert_eq!(words(&window, Role::Crash), "cm, set by you");
+}
+
+#[test]
 fn a_guess_gives_way_to_the_hint_that_contradicts_it() {
     let mut window = Window::new();
     window.open("says_mm.k", Role::Crash);

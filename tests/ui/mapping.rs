@@ -24,6 +24,41 @@ fn color_by(window: &Harness<'static, Shell>) -> ColorBy {
     window.state().state().color_by(Role::Crash)
 }
 
+/// The colours are means at the nodes; what is said of an element is its own value, as the probe says it.
+#[test]
+fn under_the_pointer_an_element_has_its_own_value() {
+    let mut window = matched();
+    click(&mut window, "Map");
+    finish(&mut window);
+    let area = window
+        .get_by(|node| {
+            node.label()
+                .is_some_and(|label| label.starts_with("Crash part, "))
+        })
+        .rect();
+    let step = egui::vec2(0.05 * area.width(), 0.0);
+    let from = area.center() - 6.0 * step;
+    let mut readout = None;
+    for n in 0..12 {
+        window.hover_at(from + n as f32 * step);
+        window.run_steps(3);
+        let mut texts = texts(&window).into_iter();
+        readout = texts.find(|text| text.text.contains("(element)"));
+        if readout.is_some() {
+            break;
+        }
+    }
+    let text = readout.expect("an element under the pointer").text;
+    let (_, id) = text.split_once("element\u{a0}").unwrap();
+    let id: String = id.chars().take_while(char::is_ascii_digit).collect();
+    let state = window.state().state();
+    let element = state.document.mapped_element(id.parse().unwrap()).unwrap();
+    let run = &state.document.current_mapping().unwrap().run;
+    let own = run.shown(element, &state.shown_value(ColorBy::Thickness));
+    let own = state.lengths_of(Role::Crash).of(own).replace(' ', "\u{a0}");
+    assert!(text.starts_with(&format!("{own}\u{a0}(element)")), "{text}");
+}
+
 #[test]
 fn a_mapping_is_made_looked_at_and_followed_to_its_worst_place() {
     let mut window = matched();

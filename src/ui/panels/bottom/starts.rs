@@ -1,6 +1,8 @@
 //! The starts of a match, the best first, while it runs and after it: what became of each, and a small
 //! picture. Pointing at a row shows its pose in the window, a click takes it.
 
+use std::cmp::Ordering;
+
 use egui::{Align, Button, Color32, Label, Layout, RichText, Sense, Ui};
 use egui_extras::{Column, TableBuilder, TableRow};
 
@@ -44,6 +46,35 @@ struct Table<'a> {
     n_best: usize,
     lines: Vec<Line<'a>>,
     open: Vec<usize>,
+    sorted: Option<Sorted>,
+}
+
+/// The figure that the groups are sorted by, by that of their best start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Sorted {
+    by: Figure,
+    is_falling: bool,
+}
+
+impl Sorted {
+    /// What a click on a heading makes of the order: rising, falling, as the match ranks them.
+    fn clicked(before: Option<Self>, by: Figure) -> Option<Self> {
+        let is_falling = match before {
+            Some(before) if before.by == by && before.is_falling => return None,
+            Some(before) => before.by == by,
+            None => false,
+        };
+        Some(Self { by, is_falling })
+    }
+
+    /// Of two numbers; a start without one comes last either way.
+    fn order(self, a: Option<f64>, b: Option<f64>) -> Ordering {
+        match (a, b) {
+            (Some(a), Some(b)) if self.is_falling => b.total_cmp(&a),
+            (Some(a), Some(b)) => a.total_cmp(&b),
+            (a, b) => b.is_some().cmp(&a.is_some()),
+        }
+    }
 }
 
 /// Draws the table of starts.
@@ -59,12 +90,14 @@ pub fn starts_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
     let groups = group_starts(starts, &state.stamped_extent());
     let open = open_groups(ui);
+    let sorted = ui.data(|data| data.get_temp(sorted_id()));
     let table = Table {
         state,
         n_starts: starts.len(),
         n_best: groups.first().map_or(0, |group| group.members.len()),
-        lines: lines(state, &groups, &open),
+        lines: lines(state, &groups, &open, sorted),
         open,
+        sorted,
     };
     head_ui(ui, &table);
     let hovered = table_ui(ui, &table, commands);
@@ -74,13 +107,19 @@ pub fn starts_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
-fn lines<'a>(state: &'a AppState, groups: &'a [StartGroup], open: &[usize]) -> Vec<Line<'a>> {
+fn lines<'a>(
+    state: &'a AppState,
+    groups: &'a [StartGroup],
+    open: &[usize],
+    sorted: Option<Sorted>,
+) -> Vec<Line<'a>> {
     let starts = state.match_starts();
     let corners = state.stamped_corners();
     let first = groups.first().map(|group| starts[group.best()].last);
     let distance = |pose: &Similarity| Some(pose.max_displacement(&first?, &corners?));
-    let mut lines = Vec::new();
+    let mut of_groups = Vec::new();
     for group in groups {
+        let mut lines = Vec::new();
         for (place, &number) in group.members.iter().enumerate() {
             let is_best = place == 0;
             if !is_best && !open.contains(&group.best()) {
@@ -94,8 +133,17 @@ fn lines<'a>(state: &'a AppState, groups: &'a [StartGroup], open: &[usize]) -> V
                 distance: distance(&start.last).filter(|_| is_best),
             });
         }
+        of_groups.push(lines);
     }
-    lines
+    if let Some(sorted) = sorted {
+        let value = |lines: &Vec<Line<'_>>| sorted.by.value(lines.first()?);
+        of_groups.sort_by(|a, b| sorted.order(value(a), value(b)));
+    }
+    of_groups.into_iter().flatten().collect()
+}
+
+fn sorted_id() -> egui::Id {
+    egui::Id::unique("order of the starts")
 }
 
 fn open_id() -> egui::Id {
@@ -125,11 +173,6 @@ fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Opti
     let unit = table.state.document.unit_suffix();
     let columns = Columns::fitting(ui.available_width());
     let figures = &columns.figures;
-    let words = ["", "start", "outcome"].map(|title| (title.to_owned(), None));
-    let figure_titles = figures
-        .iter()
-        .map(|figure| (figure.title(unit), figure.help()));
-    let titles: Vec<_> = words.into_iter().chain(figure_titles).collect();
     let mut hovered = None;
     let thumbnails = Thumbnails::of(ui.ctx());
     let mut thumbnails = thumbnails.lock();
@@ -149,13 +192,13 @@ fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Opti
     }
     builder
         .header(20.0, |mut header| {
-            for (title, help) in titles {
+            for title in ["", "start", "outcome"] {
                 header.col(|ui| {
-                    let title = caption(ui, title);
-                    if let Some(help) = help {
-                        title.on_hover_text(help);
-                    }
+                    caption(ui, title);
                 });
+            }
+            for figure in figures {
+                header.col(|ui| heading_ui(ui, *figure, unit, table.sorted));
             }
         })
         .body(|body| {
@@ -174,6 +217,35 @@ fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Opti
         });
     thumbnails.make(ui, table.state);
     hovered
+}
+
+/// The title of a figure; a click sorts by it.
+fn heading_ui(ui: &mut Ui, figure: Figure, unit: &str, sorted: Option<Sorted>) {
+    let title = figure.title(unit);
+    let sign = match sorted.filter(|sorted| sorted.by == figure) {
+        Some(sorted) if sorted.is_falling => " ▼",
+        Some(_) => " ▲",
+        None => "",
+    };
+    let text = RichText::new(format!("{title}{sign}")).small();
+    let text = text.color(Palette::of(ui).secondary);
+    let button = Button::new(text).frame(false).truncate();
+    let response = tight(ui, |ui| ui.add(button));
+    let name = format!("Sort by {title}");
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    let help = figure
+        .help()
+        .map_or_else(String::new, |help| format!("{help}\n"));
+    let response = response.on_hover_text(format!("{help}Click to sort"));
+    if response.clicked() {
+        let next = Sorted::clicked(sorted, figure);
+        ui.data_mut(|data| match next {
+            Some(next) => {
+                data.insert_temp(sorted_id(), next);
+            }
+            None => data.remove::<Sorted>(sorted_id()),
+        });
+    }
 }
 
 fn row_ui(
@@ -392,25 +464,50 @@ impl Figure {
         }
     }
 
-    fn text(self, line: &Line<'_>, lengths: Lengths) -> String {
+    /// The number itself; a time is in seconds.
+    fn value(self, line: &Line<'_>) -> Option<f64> {
         let start = line.start;
         let last = start.iterations.last();
-        let number = |value: Option<f64>| value.map(|value| lengths.number(value));
-        let text = match self {
-            Self::Kept => last.map(|step| percent(step.fraction)),
-            Self::Residual => number(last.map(|step| step.rmse)),
-            Self::P95 => number(Some(start.p95).filter(|p95| p95.is_finite())),
-            Self::Iterations => Some(start.iterations.len().to_string()),
-            Self::Time => start.outcome.map(|_| duration_text(start.took)),
-            Self::ToBest => number(line.distance),
+        match self {
+            Self::Kept => last.map(|step| step.fraction),
+            Self::Residual => last.map(|step| step.rmse),
+            Self::P95 => Some(start.p95).filter(|p95| p95.is_finite()),
+            Self::Iterations => Some(start.iterations.len() as f64),
+            Self::Time => start.outcome.map(|_| start.took.as_secs_f64()),
+            Self::ToBest => line.distance,
+        }
+    }
+
+    fn text(self, line: &Line<'_>, lengths: Lengths) -> String {
+        let Some(value) = self.value(line) else {
+            return "–".to_owned();
         };
-        text.unwrap_or_else(|| "–".to_owned())
+        match self {
+            Self::Kept => percent(value),
+            Self::Residual | Self::P95 | Self::ToBest => lengths.number(value),
+            Self::Iterations => line.start.iterations.len().to_string(),
+            Self::Time => duration_text(line.start.took),
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_heading_sorts_up_then_down_then_not() {
+        let rising = Sorted::clicked(None, Figure::P95);
+        let falling = Sorted::clicked(rising, Figure::P95);
+        assert_eq!(Sorted::clicked(falling, Figure::P95), None);
+        let other = Sorted::clicked(falling, Figure::Time).unwrap();
+        assert!(other.by == Figure::Time && !other.is_falling);
+        for (sorted, ranked) in [(rising, [1.0, 3.0]), (falling, [3.0, 1.0])] {
+            let mut values = [None, Some(3.0), Some(1.0)];
+            values.sort_by(|a, b| sorted.unwrap().order(*a, *b));
+            assert_eq!(values, [Some(ranked[0]), Some(ranked[1]), None]);
+        }
+    }
 
     #[test]
     fn what_says_least_is_left_out_first() {

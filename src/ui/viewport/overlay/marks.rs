@@ -194,11 +194,51 @@ fn file_name(state: &AppState, hit: &Hit) -> Option<String> {
     }
 }
 
-/// What the colour under the cursor says.
+/// The value of the element under the cursor, where it is known without the others; the colours blend it with those
+/// around.
+fn element_value(state: &AppState, kind: FieldKind, hit: &Hit) -> Option<f64> {
+    let id = hit.element?;
+    let by = match kind {
+        FieldKind::Thickness => ColorBy::Thickness,
+        FieldKind::Forming(value) => value.into(),
+        _ => return None,
+    };
+    if hit.role == Role::Crash
+        && let Some(run) = state.mapped_for(by)
+    {
+        let shown = state.shown_value(by);
+        let value = run.shown(state.document.mapped_element(id)?, &shown);
+        let factor = shown.value.map_or(1.0, FormingValue::shown_factor);
+        return Some(value * factor).filter(|value| value.is_finite());
+    }
+    if by != ColorBy::Thickness {
+        return None;
+    }
+    let part = match &hit.further {
+        Some(file) => &file.loaded,
+        None => &state.document.part(hit.role)?.loaded,
+    };
+    let shell = part.model.shells.iter().position(|shell| shell.id == id)?;
+    let corners = part.model.shell_thickness(shell as u32)?;
+    let mean = corners.iter().sum::<f64>() / 4.0 * part.settings.length_factor;
+    Some(mean).filter(|mean| *mean > 0.0)
+}
+
+/// What the colour under the cursor says; of an element its own value, which is then said.
 fn value_text(over: &Overlay<'_>, hit: &Hit) -> Option<String> {
+    let own = element_value(over.frame.state, over.kind?, hit);
+    let text = shown_value_text(over, hit, own.or(hit.value))?;
+    Some(if own.is_some() {
+        text + " (element)"
+    } else {
+        text
+    })
+}
+
+fn shown_value_text(over: &Overlay<'_>, hit: &Hit, value: Option<f64>) -> Option<String> {
     let state = over.frame.state;
     let is_colored = |role| *state.view.display.coloring.on.get(role);
-    match (over.kind?, hit.value) {
+    match (over.kind?, value) {
         (FieldKind::Deviation, Some(value)) => Some(state.lengths().signed_of(value)),
         (FieldKind::Deviation, None) if is_colored(hit.role) => {
             Some(OverlapClass::OnlyHere.label().to_owned())
