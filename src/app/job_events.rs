@@ -261,7 +261,7 @@ impl AppState {
         let (step, role) = step_of(key);
         let what_now = match key {
             JobKey::Load(_) | JobKey::LoadFurther(_) => {
-                "Nothing was loaded; choose another file or fix this one"
+                "It was not loaded; choose another file or fix this one"
             }
             JobKey::PlaceFurther => FURTHER_WITHOUT_POSE,
             JobKey::Export(_) => "Nothing was written or copied",

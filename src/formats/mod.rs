@@ -39,7 +39,7 @@ pub const MAX_LENGTH: f64 = 1e15;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FormatError {
     /// The file cannot be opened or unpacked.
-    #[error("cannot read the file ({reason}): {path:?}")]
+    #[error("{path:?} cannot be read ({reason})")]
     Open {
         /// File that cannot be read.
         path: PathBuf,
@@ -47,7 +47,7 @@ pub enum FormatError {
         reason: String,
     },
     /// The file is something else than a mesh that can be read.
-    #[error("the file is {kind}; {}: {path:?}", .kind.advice())]
+    #[error("{path:?} is {kind}; {}", .kind.advice())]
     Foreign {
         /// What it is.
         kind: Foreign,
@@ -55,7 +55,7 @@ pub enum FormatError {
         path: PathBuf,
     },
     /// A mesh file that is broken beyond use.
-    #[error("the file cannot be understood ({reason}): {path:?}")]
+    #[error("{path:?} cannot be understood ({reason})")]
     Broken {
         /// What is wrong.
         reason: String,

@@ -128,7 +128,7 @@ fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         messages_choice(ui, &mut settings);
         group_title(ui, "Files");
         form_row(ui, "Autosave", LABEL, |ui| {
-            ui.checkbox(&mut settings.keeps_work, "Keep the work in case of a crash")
+            ui.checkbox(&mut settings.keeps_work, "Keep the work for recovery")
                 .on_hover_text("After each step, in the folder of the program's data");
         });
         form_row(ui, "Read limit", LABEL, |ui| {

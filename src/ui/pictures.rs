@@ -95,7 +95,7 @@ fn write(picture: Picture, wanted: Wanted, sender: Sender<News>, ctx: egui::Cont
     run_once("picture", move || {
         let bytes = picture.to_png_with(&wanted.texts);
         let news = match save(&wanted.place, &wanted.inputs, &bytes) {
-            Ok(path) => (NoticeLevel::Success, format!("written: {}", path.display())),
+            Ok(path) => (NoticeLevel::Success, format!("saved: {}", path.display())),
             Err(error) => (
                 NoticeLevel::Error,
                 format!("the image could not be written: {error}"),

@@ -117,7 +117,7 @@ pub fn restore_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             ui.label(format!("Recover unsaved project from {when}?"))
                 .on_hover_text("The program ended before it was saved.");
             secondary(ui, work.title.clone());
-            if primary(ui, "Restore").clicked() {
+            if primary(ui, "Recover").clicked() {
                 commands.push(ProjectCommand::Restore(work.path.clone()).into());
             }
             if plain(ui, "Not now").clicked() {

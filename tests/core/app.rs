@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use shapematch::app::*;
 use shapematch::assess::PoseKind;
-use shapematch::formats::Model;
+use shapematch::formats::{Diagnostic, DiagnosticKind, Model};
 use shapematch::geometry::camera::StandardView;
 use shapematch::geometry::{Point3, Similarity, TriMesh, Vector3};
 use shapematch::jobs::*;
@@ -113,6 +113,12 @@ fn read(source: &PartSource, settings: &LoadSettings) -> Result<LoadedPartAndFac
         "crash.k" => model(24, 1.0, false),
         "stamped.k" => model(20, 1.0, true),
         "car.k" => car(),
+        "faulty.k" => {
+            let mut model = model(24, 1.0, false);
+            let what = Diagnostic::new(DiagnosticKind::BadField, "no number");
+            model.diagnostics.push(what);
+            model
+        }
         "panel_stamped.k" | "panel_crash.k" => model(20, 1.0, false),
         "metres.k" => model(20, 0.001, true),
         "inches.k" => model(24, 1.0 / 25.4, false),
@@ -925,6 +931,30 @@ fn turning_over_twice_comes_back() {
     }
 }
 
+/// Shares of two different parts have no difference.
+#[test]
+fn the_change_of_an_overlap_is_that_of_one_part() {
+    let mut window = Window::with_both();
+    let mut told = |of: Role, overlap: f64| {
+        for (of, overlap) in [(Role::Stamped, 0.93), (of, overlap)] {
+            let output = JobOutput::Overlapped {
+                of,
+                overlap,
+                limit: 1.0,
+            };
+            let stamp = window.state.document.stamp();
+            let stage = JobStage::Finished(output);
+            window.tell(JobId(77), JobKey::Overlap, stamp, stage);
+        }
+        let known = window.state.current_overlap().unwrap();
+        (known.of, known.change)
+    };
+    assert_eq!(told(Role::Crash, 0.5), (Role::Crash, None));
+    assert_eq!(told(Role::Stamped, 0.5), (Role::Stamped, Some(0.5 - 0.93)));
+    // Neither is covered: of the one that was, all is lost.
+    assert_eq!(told(Role::Crash, 0.0), (Role::Stamped, Some(-0.93)));
+}
+
 #[test]
 fn centers_meet() {
     let mut window = Window::with_both();
@@ -1389,6 +1419,28 @@ fn equal_messages_count_up_and_short_ones_end() {
     window.state.tick(Duration::from_secs(5));
     assert_eq!(toasts(&window.state), ["disk full"]);
     assert_eq!(window.state.log.notices.n_unread(), 1);
+}
+
+#[test]
+fn what_was_said_of_the_content_of_a_file_goes_with_it() {
+    let ends: [fn(&mut Window); 2] = [
+        |window| window.open("crash.k", Role::Crash),
+        |window| window.act(Action::CloseCrash),
+    ];
+    for end in ends {
+        let mut window = Window::new();
+        window.open("faulty.k", Role::Crash);
+        let is_told = |window: &Window| {
+            let told = toasts(&window.state);
+            told.iter().any(|text| text.contains("in faulty.k"))
+        };
+        assert!(is_told(&window));
+        end(&mut window);
+        assert!(!is_told(&window));
+        let mut kept = window.state.log.notices.kept();
+        let told = kept.find(|notice| notice.text.contains("in faulty.k"));
+        assert!(!told.unwrap().is_unread);
+    }
 }
 
 #[test]

@@ -194,7 +194,7 @@ fn the_message_after_writing_says_what_was_written_and_what_it_replaces() {
     });
     let text = told(&window);
     for words in [
-        format!("written: mapped.k; {n} thicknesses, "),
+        format!("saved: mapped.k; {n} thicknesses, "),
         "read back within".to_owned(),
         "to be used instead of crash.k".to_owned(),
         // The folder is whole, and last, where a toast is cut.
@@ -204,7 +204,7 @@ fn the_message_after_writing_says_what_was_written_and_what_it_replaces() {
     }
     // The row of the log still names the file alone, which it opens.
     let row = window.state.log.latest(LogStep::Export).unwrap();
-    assert_eq!(row.text, format!("written: {}", path.display()));
+    assert_eq!(row.text, format!("saved: {}", path.display()));
     window.apply(ExportCommand::Write {
         kind: Output::Mapped(WriteKind::Include),
         path: folder.path().join("include.k"),

@@ -188,7 +188,8 @@ fn oddities_are_named_with_their_place() {
     ));
     for name in ["a.stl", "a.obj", "a.ply", "a.k"] {
         let error = read(name, "").unwrap_err().to_string();
-        assert!(error.starts_with("the file is empty"), "{error}");
+        let begin = format!("{name:?} is empty");
+        assert!(error.starts_with(&begin), "{error}");
     }
 }
 

@@ -118,7 +118,7 @@ const SIZES: &[Vec2] = &[
 /// Words on buttons that lead out of the window.
 fn leads_out(name: &str) -> bool {
     let words = [
-        "Open", "Save", "Quit", "Write", "Restore", "recent", "Copy", "report",
+        "Open", "Save", "Quit", "Write", "Recover", "recent", "Copy", "report",
     ];
     name.ends_with('…') || words.iter().any(|word| name.contains(word))
 }

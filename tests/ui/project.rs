@@ -282,7 +282,7 @@ fn lost_work_is_offered_and_comes_back() {
     for _ in 0..400 {
         next.run_steps(1);
         std::thread::sleep(Duration::from_millis(5));
-        if next.query_by_label("Restore").is_some() {
+        if next.query_by_label("Recover").is_some() {
             break;
         }
     }
@@ -303,11 +303,11 @@ fn lost_work_is_offered_and_comes_back() {
     ] {
         next.set_size(egui::vec2(width, height));
         next.run_steps(4);
-        assert!(next.query_by_label("Restore").is_some());
+        assert!(next.query_by_label("Recover").is_some());
         let found = super::layout::faults(&next);
         assert!(found.is_empty(), "{width} × {height}: {}", found.join("\n"));
     }
-    click(&mut next, "Restore");
+    click(&mut next, "Recover");
     finish(&mut next);
     assert_eq!(*next.state().state().document.crash_from_stamped(), pose);
     assert!(next.state().state().is_unsaved());

@@ -210,7 +210,7 @@ impl Work<'_> {
                 // The message says at once what the log says in rows.
                 let notes = exported.notes.iter().map(String::as_str);
                 // A toast is cut at its end: there stands the folder, which may be long.
-                let name = format!("written: {}", file_name(&path));
+                let name = format!("saved: {}", file_name(&path));
                 let folder = path
                     .parent()
                     .map(|folder| format!("in {}", folder.display()));

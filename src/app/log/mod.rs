@@ -81,7 +81,7 @@ impl LogState {
             at: self.clock.day_time_at(self.now),
             step: LogStep::Export,
             role: None,
-            text: format!("written: {}", path.display()),
+            text: format!("saved: {}", path.display()),
             file: Some(path),
             took: Some(took),
             level: NoticeLevel::Success,

@@ -171,7 +171,7 @@ mod tests {
 
     #[test]
     fn an_export_is_called_by_its_file() {
-        let mut written = row(NoticeLevel::Success, "written: parts/report.html");
+        let mut written = row(NoticeLevel::Success, "saved: parts/report.html");
         assert_eq!(written.title(), "load");
         written.step = LogStep::Export;
         written.file = Some("parts/report.html".into());

@@ -69,7 +69,12 @@ impl MovingState {
     ) {
         let before = self
             .overlap
-            .filter(|known| known.stamp.parts == stamp.parts && known.of == of);
+            .filter(|known| known.stamp.parts == stamp.parts);
+        // Of parts that do not meet neither is covered better: it goes on to be told of the same one.
+        let of = before
+            .filter(|_| overlap == 0.0)
+            .map_or(of, |before| before.of);
+        let before = before.filter(|before| before.of == of || before.overlap == 0.0);
         self.overlap = Some(PoseOverlap {
             stamp,
             of,

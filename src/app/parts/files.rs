@@ -281,9 +281,7 @@ impl PartsState {
         let old_factor = work.document.part(role).map(Part::length_factor);
         let factor = part.settings.length_factor;
         match part.settings.units {
-            _ if old_factor == Some(factor) => {
-                format!("Match {}", counted(facts.used.len(), "part"))
-            }
+            _ if old_factor == Some(factor) => uses(facts),
             Some(units) => format!("{} is in {}", part.file_name(), units.label()),
             None => format!("Lengths × {}", tidy_factor(factor)),
         }
@@ -579,6 +577,15 @@ fn stamped_word(part: &Part) -> i32 {
     let name = part.loaded.file_name().to_lowercase();
     let has = |words: &[&str]| words.iter().any(|word| name.contains(word));
     i32::from(has(&["stamped", "stamping", "dynain", "formed"])) - i32::from(has(&["crash"]))
+}
+
+/// "Use only 2000012", "Use 3 parts".
+fn uses(facts: &PartFacts) -> String {
+    let mut used = facts.used.iter();
+    match (used.next(), used.next()) {
+        (Some(id), None) => format!("Use only {id}"),
+        _ => format!("Use {}", facts::counted(facts.used.len(), "part")),
+    }
 }
 
 /// A file is gone or read anew: what was said of its content goes with it.

@@ -103,7 +103,7 @@ pub(super) fn titles(question: &Question) -> (&'static str, &'static str) {
         Question::Open(Role::Crash) => ("Open the crash model", "Open"),
         Question::Open(Role::Stamped) => ("Open the stamped part", "Open"),
         Question::OtherMapping => ("Compare the mapping with another result", "Compare"),
-        Question::Save { .. } => ("Write to a file", "Write"),
-        Question::Picture { .. } => ("Write an image", "Write"),
+        Question::Save { .. } => ("Save to a file", "Save"),
+        Question::Picture { .. } => ("Save an image", "Save"),
     }
 }
