@@ -657,6 +657,16 @@ fn a_part_left_out_makes_the_surface_anew_and_reduces_it_again() {
 }
 
 #[test]
+fn the_choice_of_one_part_is_named_by_it() {
+    let mut window = Window::with_both();
+    let role = Role::Crash;
+    window.apply(PartCommand::UseOnly(PartRef { role, id: 12 }));
+    assert_eq!(window.state.history.undo_name(), Some("Use only 12"));
+    window.apply(PartCommand::UseAll(role));
+    assert_eq!(window.state.history.undo_name(), Some("Use 2 parts"));
+}
+
+#[test]
 fn a_drag_is_one_undo_step_from_the_pose_at_the_grab() {
     let mut window = Window::with_both();
     let n_done = window.state.history.n_done();
@@ -1913,6 +1923,7 @@ fn several_selected_parts_are_hidden_and_isolated_in_one_step() {
     window.apply(PartCommand::ToggleSelected(crash(11)));
     window.act(Action::IsolateSelected);
     assert_eq!(hidden(&window), [11]);
+    assert_eq!(window.state.history.undo_name(), Some("Show only rest"));
     let stamped = window.state.document.part(Role::Stamped).unwrap();
     assert!(stamped.hidden.is_empty(), "nothing of it is selected");
     window.apply(PartCommand::Select(None));

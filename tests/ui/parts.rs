@@ -9,6 +9,7 @@ use shapematch::app::{FileCommand, PartCommand, PartRef};
 use shapematch::role::Role;
 use shapematch::ui::Shell;
 
+use super::layout::texts;
 use super::story::{finish, window};
 
 const N_PARTS: u64 = 5_000;
@@ -52,6 +53,13 @@ fn rows(window: &Window) -> Vec<u64> {
     }
     found.sort_unstable();
     found
+}
+
+/// The titles of the columns are there.
+fn has_titles(window: &Window) -> bool {
+    let texts = texts(window);
+    let has = |title: &&str| texts.iter().any(|text| text.text == *title);
+    ["elem.", "use"].iter().all(has)
 }
 
 #[test]
@@ -131,6 +139,7 @@ fn five_thousand_parts_are_listed_filtered_and_walked_through() {
             shown.len() >= n && shown.len() <= n + 4,
             "{text}: {shown:?}"
         );
+        assert!(has_titles(&window), "{text}: one row of many has them too");
     }
 
     // One click makes a part the one that is matched.
