@@ -39,14 +39,16 @@ fn under_the_pointer_an_element_has_its_own_value() {
     let step = egui::vec2(0.05 * area.width(), 0.0);
     let from = area.center() - 6.0 * step;
     let mut readout = None;
-    for n in 0..12 {
+    // What is drawn is worked out in the background.
+    for n in (0..12).cycle().take(1200) {
         window.hover_at(from + n as f32 * step);
         window.run_steps(3);
-        let mut texts = texts(&window).into_iter();
-        readout = texts.find(|text| text.text.contains("(element)"));
+        let mut seen = texts(&window).into_iter();
+        readout = seen.find(|text| text.text.contains("(element)"));
         if readout.is_some() {
             break;
         }
+        std::thread::sleep(std::time::Duration::from_millis(10));
     }
     let text = readout.expect("an element under the pointer").text;
     let (_, id) = text.split_once("element\u{a0}").unwrap();
