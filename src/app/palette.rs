@@ -207,18 +207,14 @@ impl AppState {
         let possible = self.document.has_part(role);
         let possible = possible.and_then(|()| self.jobs.is_unlocked());
         let reason = possible.err().map(|reason| reason.0);
-        Units::all().map(move |units| PaletteEntry {
-            label: format!("Units of the {} file: {}", role.word(), units.label()),
-            group: "Units",
-            help: "What the lengths of the file are in".to_owned(),
-            keys: String::new(),
-            reason,
-            is_recent: false,
-            letters: Vec::new(),
-            does: does(FileCommand::SetUnits {
-                role,
-                units: Some(units),
-            }),
+        Units::all().map(move |units| {
+            let label = format!("Units of the {} file: {}", role.word(), units.label());
+            let units = Some(units);
+            let does = does(FileCommand::SetUnits { role, units });
+            PaletteEntry {
+                reason,
+                ..PaletteEntry::plain(label, "Units", "What the lengths of the file are in", does)
+            }
         })
     }
 
