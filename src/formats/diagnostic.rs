@@ -130,6 +130,8 @@ kinds! {
     ZeroArea, Warning, "element without area";
     /// A shell with fewer than three different nodes.
     DegenerateElement, Warning, "degenerate element";
+    /// Shells whose nodes do not lie in their mid-surface, for which they are taken all the same.
+    OffMidSurface, Warning, "nodes off the mid-surface";
     /// An element names a part that no file defines.
     UndefinedPart, Note, "undefined part";
     /// A part names a section that no file defines.
@@ -160,6 +162,8 @@ kinds! {
     Mesh, Warning, "mesh file";
     /// The file's name speaks for another format than its content.
     MisleadingName, Warning, "name of another format";
+    /// Other bytes follow the gzip data of the file.
+    AfterGzip, Warning, "bytes behind gzip data";
     /// A word after `*` that LS-DYNA does not know.
     UnknownKeyword, Warning, "unknown keyword";
     /// Units in a comment that are not those of the materials.

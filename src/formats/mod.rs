@@ -193,10 +193,19 @@ pub fn read_text(
     options: &ReadOptions,
     monitor: &Monitor,
 ) -> Result<FileBytes, FormatError> {
-    let bytes = source::open_unpacked(source, path, options.max_bytes, monitor);
-    Ok(text::normalised(
-        bytes.map_err(|error| FormatError::open(path, &error))?,
-    ))
+    Ok(unpacked_text(source, path, options, monitor)?.0)
+}
+
+/// The same and the number of bytes behind packed data.
+fn unpacked_text(
+    source: &dyn FileSource,
+    path: &Path,
+    options: &ReadOptions,
+    monitor: &Monitor,
+) -> Result<(FileBytes, u64), FormatError> {
+    let opened = source::open_unpacked(source, path, options.max_bytes, monitor);
+    let (bytes, n_after) = opened.map_err(|error| FormatError::open(path, &error))?;
+    Ok((text::normalised(bytes), n_after))
 }
 
 /// Reads a file from any source, whatever its format.
@@ -206,7 +215,7 @@ pub fn read_from(
     options: &ReadOptions,
     monitor: &Monitor,
 ) -> Result<Model, FormatError> {
-    let bytes = read_text(source, path, options, monitor)?;
+    let (bytes, n_after) = unpacked_text(source, path, options, monitor)?;
     let format = Format::of(path, &bytes).map_err(|kind| FormatError::Foreign {
         kind,
         path: path.to_path_buf(),
@@ -218,6 +227,14 @@ pub fn read_from(
         Format::Ply => ply::read(&bytes, path, monitor)?,
     };
     model.format = format;
+    if n_after > 0 {
+        let message = format!(
+            "{n_after} bytes behind the gzip data are passed over; the file may be damaged"
+        );
+        let diagnostic = Diagnostic::new(DiagnosticKind::AfterGzip, message);
+        let file = std::sync::Arc::from(path);
+        model.diagnostics.push(diagnostic.at(Position::file(&file)));
+    }
     if let Some(by_name) = Format::of_name(path).filter(|&by_name| by_name != format) {
         let (named, is) = (by_name.label(), format.label());
         let message = format!("the file is named like {named} but is {is}, and is read as that");

@@ -9,7 +9,7 @@ use crate::geometry::{Matrix3, Similarity};
 /// The model under `motion`: nodes moved, stress and strain tensors turned with them (they are in
 /// the global frame), thicknesses scaled. Ids stay. Nodes whose id is repeated are moved like all
 /// others. History variables are kept as they are; the tensors among them that the file names as such
-/// (`NTENSR`) are turned. O(model).
+/// (`NTENSR`) are turned. Density and modulus of materials are not known in a scaled model. O(model).
 ///
 /// Under a mirror the corners of shells and solids change to the order 2 1 4 3, and with them
 /// corner thicknesses, mid-side nodes and integration points in the plane. The mirrored sheet then
@@ -32,6 +32,12 @@ pub fn moved(model: &Model, motion: &Similarity) -> Model {
     }
     for section in &mut result.sections {
         section.thickness = section.thickness.map(|t| t * motion.scale);
+    }
+    // In the new unit of lengths they are other numbers, which masses and times decide.
+    if motion.scale != 1.0 {
+        for material in &mut result.materials {
+            (material.density, material.modulus) = (0.0, 0.0);
+        }
     }
     turn(&mut result.forming, &motion.rotation);
     if motion.is_mirrored() {

@@ -83,10 +83,10 @@ pub(super) fn recognise(path: &Path, bytes: &[u8]) -> Result<Format, Foreign> {
 }
 
 fn is_ply(head: &[u8]) -> bool {
-    let word = head
-        .get(..3)
-        .is_some_and(|w| w.eq_ignore_ascii_case(b"ply"));
-    word && matches!(head.get(3), Some(b'\n' | b'\r' | b' ' | b'\t'))
+    // A deck may begin with a line such as "ply of carbon".
+    let mut lines = head.split(|&b| b == b'\n' || b == b'\r');
+    let first = lines.next().unwrap_or_default();
+    first.trim_ascii_end().eq_ignore_ascii_case(b"ply") && lines.next().is_some()
 }
 
 /// An LSDA file begins with the sizes of its own integers: header length 8, lengths, offsets.
@@ -136,11 +136,23 @@ fn has_keyword(bytes: &[u8]) -> bool {
         .any(|at| keyword_name(&bytes[at + 1..]).is_some_and(|name| is_known(&name)))
 }
 
+/// A line that begins with `*KEYWORD`.
+fn has_head(head: &[u8]) -> bool {
+    let mut lines = head.split(|&b| b == b'\n');
+    lines.any(|line| {
+        line.get(..8)
+            .is_some_and(|start| start.eq_ignore_ascii_case(b"*KEYWORD"))
+    })
+}
+
 /// What the lines of a head speak for. `Err(None)`: nothing.
 fn text_format(head: &[u8], by_name: Option<Format>) -> Result<Format, Option<Foreign>> {
     if let Some(foreign) = foreign_text(head) {
         return Err(Some(foreign));
     }
+    // Of these even a first line as other formats have it is a remark.
+    let is_named = by_name == Some(Format::Keyword) && has_keyword(head);
+    let is_sure_deck = is_named || has_head(head);
     let (mut first, mut is_deck) = (None, false);
     for line in head.split(|&b| b == b'\n') {
         let line = line.trim_ascii_end();
@@ -162,6 +174,9 @@ fn text_format(head: &[u8], by_name: Option<Format>) -> Result<Format, Option<Fo
         }
         if let Some(foreign) = foreign_line(line) {
             return Err(Some(foreign));
+        }
+        if is_sure_deck {
+            continue;
         }
         let is_first = first.is_none();
         first.get_or_insert(trimmed);

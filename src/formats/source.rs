@@ -7,9 +7,10 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{self, Read};
+use std::io::{self, BufRead, Read};
 use std::path::{Component, Path, PathBuf};
 
+use flate2::bufread::GzDecoder;
 use rayon::prelude::*;
 
 use super::FileBytes;
@@ -19,6 +20,8 @@ use crate::monitor::{Cancelled, Monitor};
 const PIECE: usize = 1 << 20;
 /// Bytes between two questions to the monitor.
 const WAVE: usize = 16 << 20;
+/// How gzip data begin.
+const GZIP: [u8; 2] = [0x1f, 0x8b];
 
 /// More bytes than may be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -48,6 +51,11 @@ pub trait FileSource: Send + Sync {
 
     /// The path under which a file exists, letter case of its name and its folders ignored if need be.
     fn find(&self, path: &Path) -> Option<PathBuf>;
+
+    /// What stands at a path and is no file, in words.
+    fn other_than_file(&self, _path: &Path) -> Option<&'static str> {
+        None
+    }
 }
 
 /// The real disk.
@@ -94,6 +102,18 @@ impl FileSource for Disk {
 
     fn find(&self, path: &Path) -> Option<PathBuf> {
         of_any_case(path, Path::is_file)
+    }
+
+    fn other_than_file(&self, path: &Path) -> Option<&'static str> {
+        match std::fs::metadata(path) {
+            Ok(found) if found.is_dir() => Some("a folder"),
+            Ok(found) if !found.is_file() => Some("a pipe or a device"),
+            Ok(_) => None,
+            Err(_) => path
+                .symlink_metadata()
+                .is_ok()
+                .then_some("a link that leads nowhere"),
+        }
     }
 }
 
@@ -205,31 +225,76 @@ fn read_stream(stream: impl Read, max_bytes: u64, monitor: &Monitor) -> io::Resu
     Ok(bytes.into())
 }
 
-/// Opens a file and unpacks it if it is gzip by content.
+/// Opens a file and unpacks it if it is gzip by content. The second value counts the bytes behind the packed data,
+/// which are passed over.
 pub fn open_unpacked(
     source: &dyn FileSource,
     path: &Path,
     max_bytes: u64,
     monitor: &Monitor,
-) -> io::Result<FileBytes> {
+) -> io::Result<(FileBytes, u64)> {
     let mut start = Vec::new();
     source.stream(path)?.take(2).read_to_end(&mut start)?;
-    if start != [0x1f, 0x8b] {
-        return source.open(path, max_bytes, monitor);
+    if start != GZIP {
+        return Ok((source.open(path, max_bytes, monitor)?, 0));
     }
     let packed = io::BufReader::new(source.stream(path)?);
-    let unpacked = read_stream(
-        flate2::bufread::MultiGzDecoder::new(packed),
-        max_bytes,
-        monitor,
-    );
-    unpacked.map_err(|error| match error.kind() {
+    let mut members = GzipMembers {
+        member: Some(GzDecoder::new(packed)),
+        n_after: 0,
+    };
+    let unpacked = read_stream(&mut members, max_bytes, monitor);
+    let bytes = unpacked.map_err(|error| match error.kind() {
         io::ErrorKind::UnexpectedEof => io::Error::new(
             io::ErrorKind::UnexpectedEof,
             "its gzip data are cut off; copy or download it again",
         ),
         _ => error,
-    })
+    })?;
+    Ok((bytes, members.n_after))
+}
+
+/// The members of a gzip file one after the other. Other bytes may follow them, as zeros do on a tape; the program
+/// gzip passes over them too.
+struct GzipMembers<R> {
+    /// `None` behind the last one.
+    member: Option<GzDecoder<R>>,
+    /// Bytes behind the last one, unless all of them are zero.
+    n_after: u64,
+}
+
+impl<R: BufRead> Read for GzipMembers<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        while let Some(mut member) = self.member.take() {
+            let read = member.read(buffer);
+            if buffer.is_empty() || !matches!(read, Ok(0)) {
+                self.member = Some(member);
+                return read;
+            }
+            let mut rest = member.into_inner();
+            if rest.fill_buf()?.first() == Some(&GZIP[0]) {
+                self.member = Some(GzDecoder::new(rest));
+            } else {
+                self.n_after = n_until_end(rest)?;
+            }
+        }
+        Ok(0)
+    }
+}
+
+/// How many bytes are left, 0 if all of them are zero.
+fn n_until_end(mut rest: impl BufRead) -> io::Result<u64> {
+    let (mut n, mut is_padding) = (0, true);
+    loop {
+        let bytes = rest.fill_buf()?;
+        if bytes.is_empty() {
+            return Ok(if is_padding { 0 } else { n });
+        }
+        is_padding &= bytes.iter().all(|&byte| byte == 0);
+        let n_bytes = bytes.len();
+        n += n_bytes as u64;
+        rest.consume(n_bytes);
+    }
 }
 
 /// Files held in memory, by path.
@@ -315,6 +380,10 @@ impl FileSource for Replaced<'_> {
             None => self.others.find(path),
         }
     }
+
+    fn other_than_file(&self, path: &Path) -> Option<&'static str> {
+        self.others.other_than_file(path)
+    }
 }
 
 /// The path without `.` and with `..` worked out as far as the text allows.
@@ -357,7 +426,23 @@ mod tests {
 
     fn unpacked(bytes: Vec<u8>, max_bytes: u64) -> io::Result<FileBytes> {
         let source = Memory::new().with("deck.k", bytes);
-        open_unpacked(&source, Path::new("deck.k"), max_bytes, &Monitor::silent())
+        let path = Path::new("deck.k");
+        Ok(open_unpacked(&source, path, max_bytes, &Monitor::silent())?.0)
+    }
+
+    #[test]
+    fn bytes_behind_gzip_data_are_passed_over_and_counted() {
+        let deck = packed(b"*KEYWORD\n");
+        let end = packed(b"*END\n");
+        let zeros = vec![0; 70_000];
+        for (after, n_after) in [(&b""[..], 0), (&zeros, 0), (b"garbage", 7)] {
+            let all = [&deck[..], &end, after].concat();
+            let source = Memory::new().with("deck.k", all);
+            let path = Path::new("deck.k");
+            let (bytes, n) = open_unpacked(&source, path, NO_LIMIT, &Monitor::silent()).unwrap();
+            assert_eq!(&bytes[..], b"*KEYWORD\n*END\n");
+            assert_eq!(n, n_after);
+        }
     }
 
     #[test]

@@ -164,15 +164,18 @@ impl FormingInfo {
             corners.flat_map(move |corners| corners.into_iter().take(n))
         });
         let corners = corners.filter(|corner| *corner != 0.0);
-        let plastic_strains = model
-            .forming
-            .stresses()
+        // A deck without shells has results for those of another.
+        let known: HashSet<u64> = model.shells.iter().map(|shell| shell.id).collect();
+        let is_own = |id: u64| known.is_empty() || known.contains(&id);
+        let stresses = model.forming.stresses();
+        let plastic_strains = stresses
+            .filter(|stress| is_own(stress.element_id))
             .flat_map(|stress| stress.points.iter().map(|point| point.plastic_strain));
         let others = &model.forming.others;
         Self {
             thickness: with_thickness().count(),
-            stress: n_shells(model, model.forming.stresses().map(|s| s.element_id)),
-            strain: n_shells(model, model.forming.strains().map(|s| s.element_id)),
+            stress: n_shells(model.forming.stresses().map(|s| s.element_id), is_own),
+            strain: n_shells(model.forming.strains().map(|s| s.element_id), is_own),
             others: others.solid_stress.max(others.solid_strain)
                 + others.thick_shell_stress.max(others.thick_shell_strain),
             history_variables: model
@@ -192,14 +195,10 @@ impl FormingInfo {
     }
 }
 
-/// How many shells results with these ids belong to. A deck without shells has them for those of another.
-fn n_shells(model: &Model, ids: impl Iterator<Item = u64>) -> usize {
-    let ids: HashSet<u64> = ids.collect();
-    if model.shells.is_empty() {
-        return ids.len();
-    }
-    let own: HashSet<u64> = model.shells.iter().map(|shell| shell.id).collect();
-    ids.intersection(&own).count()
+/// How many shells of the deck results with these ids belong to.
+fn n_shells(ids: impl Iterator<Item = u64>, is_own: impl Fn(u64) -> bool) -> usize {
+    let ids: HashSet<u64> = ids.filter(|&id| is_own(id)).collect();
+    ids.len()
 }
 
 fn range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {

@@ -5,8 +5,8 @@ use std::path::Path;
 use proptest::prelude::*;
 use shapematch::formats::keyword::write::{WriteOptions, write};
 use shapematch::formats::model::{
-    Nodes, Part, Section, Set, Shell, ShellExtra, ShellFormulation, Solid, SolidKind, StrainPoint,
-    StressPoint,
+    Material, Nodes, Part, Plies, Section, Set, Shell, ShellExtra, ShellFormulation, Solid,
+    SolidKind, StrainPoint, StressPoint,
 };
 use shapematch::formats::moved::moved;
 use shapematch::formats::{Memory, Model, ReadOptions, read_from};
@@ -65,6 +65,7 @@ fn add_parts(model: &mut Model) {
     model.sections = vec![Section {
         id: 3,
         thickness: [1.25, 1.25, 1.5, 1.25],
+        nloc: 0.0,
         formulation: ShellFormulation {
             elform: -16,
             n_layers: 5,
@@ -183,6 +184,53 @@ fn everything_comes_back_in_every_width() {
         let model = everything(first);
         same(&model, &again(&model));
     }
+}
+
+#[test]
+fn formulation_and_layers_of_plies_and_what_is_known_of_materials_are_kept() {
+    let mut model = everything(1);
+    model.parts[0].plies = Some(Plies {
+        thickness: vec![0.5, 0.25, 0.5],
+        elform: 16,
+        nloc: 1.0,
+    });
+    (model.parts[0].section_id, model.parts[0].material_id) = (0, 4);
+    let material = |id: u64, law: &str, density: f64| Material {
+        id,
+        law: law.to_owned(),
+        density,
+        modulus: 2.1e5,
+    };
+    model.materials = vec![
+        material(4, "24", 7.85e-9),
+        material(5, "36E", 0.0),
+        material(6, "CUSTOM_ONE", 0.0),
+    ];
+    let bytes = write(&model, &WriteOptions::default(), &Monitor::silent()).unwrap();
+    let source = Memory::new().with("out.k", bytes);
+    let options = ReadOptions::default();
+    let back = read_from(&source, Path::new("out.k"), &options, &Monitor::silent()).unwrap();
+    assert_eq!(back.materials, model.materials);
+    assert_eq!(back.parts[0].material_id, 4);
+    assert_eq!(back.parts[0].thickness, model.parts[0].thickness);
+    let id = back.parts[0].section_id;
+    let section = back
+        .sections
+        .iter()
+        .find(|section| section.id == id)
+        .unwrap();
+    assert_eq!(
+        (section.formulation.elform, section.formulation.n_layers),
+        (16, 3)
+    );
+    assert_eq!(section.nloc, 1.0);
+    // In another unit of lengths the numbers of the materials are others.
+    let scaled = moved(&model, &Similarity::from_scale(25.4));
+    assert_eq!(scaled.materials[0].law, "24");
+    assert_eq!(
+        (scaled.materials[0].density, scaled.materials[0].modulus),
+        (0.0, 0.0)
+    );
 }
 
 proptest! {

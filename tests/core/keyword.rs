@@ -815,3 +815,136 @@ fn materials_of_an_include_are_in_the_units_of_the_deck_around_it() {
         assert_eq!(found.collect::<Vec<_>>(), expected, "{factors}");
     }
 }
+
+#[test]
+fn lengths_of_a_transformation_are_in_the_unit_of_the_file_that_defines_it() {
+    const SHEET: &str =
+        "*NODE\n1,0,0,0\n2,10,0,0\n3,10,10,0\n4,0,10,0\n*ELEMENT_SHELL\n1,1,1,2,3,4\n";
+    const BY_ONE: &str = "*DEFINE_TRANSFORMATION\n5\nTRANSL,1.\n";
+    const SET: &str = "*SET_NODE_LIST\n3\n1,2,3,4\n";
+    let included = |file: &str, factor: &str, id: &str| {
+        format!("*INCLUDE_TRANSFORM\n{file}\n\n\n1.,1.,{factor}\n{id}\n")
+    };
+    let thousand = included("a.k", "1000.", "");
+    let ways = [
+        // Nodes are moved where all else is done, or at once.
+        (
+            thousand.clone(),
+            format!("{BY_ONE}{SET}*NODE_TRANSFORM\n5,3\n{SHEET}"),
+            String::new(),
+        ),
+        (
+            thousand.clone(),
+            format!("{BY_ONE}{SET}{SHEET}*NODE_TRANSFORM\n5,3,1\n"),
+            String::new(),
+        ),
+        // An include below it is moved.
+        (
+            thousand.clone(),
+            BY_ONE.to_owned() + &included("b.k", "1.", "5"),
+            SHEET.to_owned(),
+        ),
+        // It is used beside the file.
+        (
+            thousand + &included("b.k", "1000.", "5"),
+            BY_ONE.to_owned(),
+            SHEET.to_owned(),
+        ),
+    ];
+    for (main, a, b) in ways {
+        let files = Memory::new()
+            .with("main.k", main)
+            .with("a.k", &*a)
+            .with("b.k", b);
+        let nodes = read_files(&files).nodes;
+        let first = nodes.position_of(1).unwrap();
+        let second = nodes.position_of(2).unwrap();
+        assert_eq!([first.x, second.x], [1000.0, 11_000.0], "{a}");
+    }
+    let rows = "MIRROR,1.,,,2.\nROTATE,,,1.,1.,,,180.\nPOINT,1,1.\nPOINT,2,1.,1.\nPOINT,3,,1.\n\
+                POINT,4,2.\nPOINT,5,2.,1.\nPOINT,6,1.,1.\nPOS6P,1,2,3,4,5,6\n";
+    let move_in = |factor: f64| {
+        let a = format!("*DEFINE_TRANSFORMATION\n5\n{rows}{SET}*NODE_TRANSFORM\n5,3\n{SHEET}");
+        let main = included("a.k", &factor.to_string(), "");
+        let model = read_files(&Memory::new().with("main.k", main).with("a.k", a));
+        model.nodes.positions().to_vec()
+    };
+    for (small, large) in move_in(1.0).iter().zip(move_in(8.0)) {
+        assert!((large - small * 8.0).norm() < 1e-9, "{small} {large}");
+    }
+}
+
+#[test]
+fn nodes_that_lie_off_the_mid_surface_are_told() {
+    let deck = |rest: &str| {
+        let nodes = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n";
+        read_text(format!("{nodes}*PART\nsheet\n1,1\n{rest}"))
+    };
+    let shell = "*ELEMENT_SHELL\n1,1,1,2,3,4\n";
+    let cases = [
+        (
+            format!("{shell}*SECTION_SHELL\n1,16\n2.,2.,2.,2.,1\n"),
+            "lie 1 off",
+        ),
+        (
+            format!("{shell}*SECTION_SHELL\n1,16\n2.,2.,2.,2.,-0.5\n"),
+            "lie 0.5 off",
+        ),
+        (
+            "*ELEMENT_SHELL_THICKNESS_OFFSET\n1,1,1,2,3,4\n1.,1.,1.,1.\n-0.25\n".to_owned(),
+            "1 shell lie up to 0.25 off",
+        ),
+        (
+            format!("{shell}*PART_COMPOSITE\nlaminate\n2,16,,1\n3,0.5,,,3,0.5\n"),
+            "lie 0.5 off",
+        ),
+    ];
+    for (rest, told) in cases {
+        let model = deck(&rest);
+        let found = first(&model, DiagnosticKind::OffMidSurface);
+        assert!(found.message.contains(told), "{}", found.message);
+    }
+    for rest in [
+        format!("{shell}*SECTION_SHELL\n1,16\n2.,2.,2.,2.,0\n"),
+        "*ELEMENT_SHELL_OFFSET\n1,1,1,2,3,4\n0.\n".to_owned(),
+    ] {
+        assert!(!kinds(&deck(&rest)).contains(&DiagnosticKind::OffMidSurface));
+    }
+}
+
+#[test]
+fn folders_of_includes_are_read_as_file_names_are() {
+    let shell = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n*ELEMENT_SHELL\n1,1,1,2,3\n";
+    for folder in ["sub\\deep", ".\\sub\\deep\\", "sub/&where", "sub\\&where"] {
+        let main = format!(
+            "*PARAMETER\nC where,deep\n*INCLUDE_PATH_RELATIVE\n{folder}\n*INCLUDE\nmesh.k\n*END\n"
+        );
+        let files = Memory::new()
+            .with("main.k", main)
+            .with("sub/deep/mesh.k", shell);
+        let model = read_files(&files);
+        let found: Vec<String> = model.diagnostics.iter().map(ToString::to_string).collect();
+        assert_eq!(model.shells.len(), 1, "{folder}: {found:?}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn an_include_that_is_no_file_is_named_for_what_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::create_dir(at("folder")).unwrap();
+    std::os::unix::fs::symlink("b", at("a")).unwrap();
+    std::os::unix::fs::symlink("a", at("b")).unwrap();
+    for (name, told) in [
+        ("folder", "is a folder"),
+        ("a", "is a link that leads nowhere"),
+        ("/dev/null", "is a pipe or a device"),
+        ("nowhere.k", "is not found"),
+    ] {
+        std::fs::write(at("main.k"), format!("*KEYWORD\n*INCLUDE\n{name}\n*END\n")).unwrap();
+        let model = try_read(&Disk, at("main.k").to_str().unwrap()).unwrap();
+        let found = first(&model, DiagnosticKind::MissingInclude);
+        assert!(found.message.contains(told), "{}", found.message);
+    }
+}

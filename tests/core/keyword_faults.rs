@@ -63,6 +63,7 @@ fn errors_that_concern_where_things_lie_are_told_from_others() {
         "*PART\nother\n-2,1\n",
         "*INITIAL_STRESS_SHELL\n1,1,1\n0.,x,1.,1.,1.,1.,1.,1.\n",
         "*NODE_THICKNESS\nx,1.0\n",
+        "*NODE_THICKNESS\n1,-1.0\n",
         "*ELEMENT_SHELL_THICKNESS\n2,1,1,2,3,4\nx,1.,1.,1.\n",
         "*INCLUDE\nnowhere.k\n",
     ] {

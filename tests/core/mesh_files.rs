@@ -91,6 +91,9 @@ fn content_tells_the_format_where_the_name_does_not() {
             Format::Obj,
         ),
         ("x.Obj", b"o only a name\n", Format::Obj),
+        ("part.k", b"ply of carbon\n*KEYWORD\n", Format::Keyword),
+        ("part", b"v 1 2 3\n*KEYWORD\n*END\n", Format::Keyword),
+        ("part.key", b"v 1 2 3\n*NODE\n", Format::Keyword),
         ("part.STL.gz", b"no word of it\n", Format::Stl),
     ];
     for (name, bytes, format) in cases {

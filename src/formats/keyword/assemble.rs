@@ -18,7 +18,7 @@ use super::nodes::{NodeChunk, NodeThickness, find_node};
 use super::parts::RawPart;
 use super::results::FormingCount;
 use super::sets::RawSet;
-use super::shells::{ElementOffsets, PackedIds, PartIds, ShellChunk, find_element};
+use super::shells::{ElementOffsets, PackedIds, PartIds, ShellChunk, ShellOffsets, find_element};
 use super::solids::{RawSolid, SolidChunk};
 use super::source_file::{Place, SourceFile};
 use super::transform::Transformation;
@@ -143,6 +143,8 @@ pub(crate) enum Motion {
 /// Everything that was read so far, with ids.
 #[derive(Default)]
 pub(crate) struct Assembly {
+    /// Width of fields of the file that was asked for, behind its last `*KEYWORD` line.
+    pub layout: Layout,
     pub title: String,
     /// The bytes of titles that are not written back as they are shown.
     pub raw_titles: RawTitles,
@@ -154,6 +156,7 @@ pub(crate) struct Assembly {
     section_places: HashMap<u64, (usize, Place)>,
     pub materials: Vec<Material>,
     pub shell_control: ShellControl,
+    pub offsets: ShellOffsets,
     pub sets: Vec<(Arc<SourceFile>, RawSet)>,
     pub(super) transformations: BTreeMap<u64, (Transformation, Place)>,
     pub node_thickness: Vec<NodeThickness>,
@@ -245,6 +248,7 @@ impl Assembly {
             ..extra
         });
         self.extras.extend(extras);
+        self.offsets.add(chunk.offsets);
         self.found.append(chunk.diagnostics);
         self.shell_origins.push(origin);
     }

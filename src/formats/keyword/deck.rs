@@ -106,6 +106,9 @@ impl Reader<'_> {
             self.block(file, &block, &context)?;
             last = Some(block);
         }
+        if self.open.len() == 1 {
+            self.assembly.layout = context.layout;
+        }
         // Included files and loose cards often have neither head nor end.
         if let Some(last) = last.filter(|_| has_head && self.open.len() == 1) {
             self.report_cut(file, &last);
@@ -299,6 +302,7 @@ impl Reader<'_> {
             let read = Transformation::from_block(block, &mut assembly.found);
             if let Some((id, mut transformation)) = read {
                 transformation.offset_nodes(context.offsets.node);
+                transformation.scale_lengths(context.length);
                 let id = nodes::shifted(id, context.offsets.define);
                 let place = Place::new(file, block.offset);
                 assembly.add_transformation(id, transformation, place);
@@ -339,14 +343,16 @@ impl Reader<'_> {
                     self.included(file, block, include, context)?;
                 }
             }
-            "INCLUDE_PATH" => {
-                let paths = read_paths(block).into_iter().map(PathBuf::from);
-                self.search.folders.extend(paths);
-            }
-            "INCLUDE_PATH_RELATIVE" => {
-                let master = self.search.master.clone();
-                let paths = read_paths(block).into_iter().map(|path| master.join(path));
-                self.search.folders.extend(paths);
+            name @ ("INCLUDE_PATH" | "INCLUDE_PATH_RELATIVE") => {
+                let start = if name == "INCLUDE_PATH" {
+                    PathBuf::new()
+                } else {
+                    self.search.master.clone()
+                };
+                for path in read_paths(block) {
+                    let path = start.join(&*self.parameters.substitute(&path));
+                    self.search.folders.push(path);
+                }
             }
             _ => {
                 let stamped = read_stamped_include(&with_parameters, &context.offsets);
@@ -449,11 +455,11 @@ impl Reader<'_> {
         let result = match search.find(self.source, folder, &name) {
             Some(path) => self.open_found(path),
             None => {
-                let tried = search.tried(folder, &name);
-                Err((
-                    DiagnosticKind::MissingInclude,
-                    format!("is not found; tried {tried}"),
-                ))
+                let what = match search.other_than_file(self.source, folder, &name) {
+                    Some(what) => format!("is {what}, not a file"),
+                    None => format!("is not found; tried {}", search.tried(folder, &name)),
+                };
+                Err((DiagnosticKind::MissingInclude, what))
             }
         };
         self.monitor.check()?;
@@ -492,7 +498,8 @@ impl Reader<'_> {
             return Err((DiagnosticKind::LimitReached, message));
         }
         let n_left = self.options.max_bytes.saturating_sub(self.n_bytes);
-        let bytes = open_unpacked(self.source, &path, n_left, self.monitor).map_err(|error| {
+        let opened = open_unpacked(self.source, &path, n_left, self.monitor);
+        let (bytes, _) = opened.map_err(|error| {
             let is_limit = error.get_ref().is_some_and(|inner| inner.is::<TooLarge>());
             if is_limit {
                 let max_bytes = self.options.max_bytes;

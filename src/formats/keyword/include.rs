@@ -186,9 +186,12 @@ pub(crate) fn read_includes(block: &Block<'_>) -> Vec<Include> {
     includes
 }
 
-/// The folders of an `*INCLUDE_PATH` block.
+/// The folders of an `*INCLUDE_PATH` block, with slashes between their pieces on every system.
 pub(crate) fn read_paths(block: &Block<'_>) -> Vec<String> {
-    read_includes(block).into_iter().map(|i| i.name).collect()
+    let includes = read_includes(block).into_iter();
+    includes
+        .map(|include| include.name.replace('\\', "/"))
+        .collect()
 }
 
 /// The file of an `*INCLUDE_STAMPED_…` block with the part or set of parts it is mapped onto; `None` for other
@@ -330,6 +333,19 @@ impl SearchPath {
             }
             let mut folders = self.folders(folder);
             folders.find_map(|folder| source.find(&tidy(&folder.join(name))))
+        })
+    }
+
+    /// What stands where [`SearchPath::find`] looks for a file and is none, in words.
+    pub(crate) fn other_than_file(
+        &self,
+        source: &dyn FileSource,
+        folder: &Path,
+        name: &str,
+    ) -> Option<&'static str> {
+        names_of(name).into_iter().find_map(|name| {
+            let mut folders = self.folders(folder);
+            folders.find_map(|folder| source.other_than_file(&tidy(&folder.join(&name))))
         })
     }
 

@@ -51,15 +51,28 @@ pub(crate) fn read_material(block: &Block<'_>, context: &Context) -> Option<Mate
         cards.next_line();
     }
     let card = cards.next()?;
-    let modulus = card.real(EIGHT_BY_10, 2).ok().flatten().unwrap_or(0.0);
+    let real = |index| card.real(EIGHT_BY_10, index).ok().flatten().unwrap_or(0.0);
     Some(Material {
         id: shifted(
             card.required_id(EIGHT_BY_10, 0).ok()?,
             context.offsets.material,
         ),
         law,
-        modulus: modulus * context.stress,
+        density: real(1) * context.density,
+        modulus: real(2) * context.stress,
     })
+}
+
+/// The keyword of a law as [`law_of`] names it, without `*`.
+pub(super) fn keyword_of(law: &str) -> String {
+    let n_digits = law.bytes().take_while(u8::is_ascii_digit).count();
+    let (digits, rest) = law.split_at(n_digits);
+    let numbered = format!("MAT_{digits:0>3}{rest}");
+    if law_of(&numbered).as_deref() == Some(law) {
+        numbered
+    } else {
+        format!("MAT_{law}")
+    }
 }
 
 /// The law that a keyword (`MAT_…`) names; `None` for one that is no material of its own.
@@ -108,6 +121,18 @@ mod tests {
             "PLASTICITY_WITH_DAMAGE_ORTHO"
         );
         assert_eq!(law_of("MAT_ADD_EROSION"), None);
+        assert_eq!(keyword_of("24"), "MAT_024");
+        for law in [
+            "24",
+            "36",
+            "36E",
+            "224",
+            "3D_LAW",
+            "PLASTICITY_WITH_DAMAGE_ORTHO",
+            "SPOTWELD",
+        ] {
+            assert_eq!(law_of(&keyword_of(law)).as_deref(), Some(law));
+        }
         assert_eq!(law_of("MATERIAL"), None);
     }
 }

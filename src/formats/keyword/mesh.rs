@@ -22,6 +22,8 @@ pub(crate) struct ShellCards {
     pub thickness: bool,
     /// The fifth field of that card is the material angle, not a coordinate system.
     pub beta: bool,
+    /// The first of the cards that are passed over is the distance of the nodes from the mid-surface.
+    pub offset: bool,
     /// Cards for offset and scalar nodes, which are passed over.
     pub n_passed_over: usize,
     /// Any number of cards with plies.
@@ -94,7 +96,11 @@ fn shell_cards<'a>(options: impl Iterator<Item = &'a str>) -> Option<ShellCards>
         match option {
             "THICKNESS" | "MCID" => cards.thickness = true,
             "BETA" => (cards.thickness, cards.beta) = (true, true),
-            "OFFSET" | "DOF" => cards.n_passed_over += 1,
+            "OFFSET" => {
+                cards.offset = true;
+                cards.n_passed_over += 1;
+            }
+            "DOF" => cards.n_passed_over += 1,
             "COMPOSITE" => cards.plies = true,
             // `COMPOSITE_LONG` has one ply a card; `SHL4_TO_SHL8` has no cards of its own.
             "LONG" | "SHL4" | "TO" | "SHL8" => {}

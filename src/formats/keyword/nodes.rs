@@ -8,6 +8,7 @@ use super::block::Block;
 use super::card::{Card, EIGHT_BY_10, FieldError, Misread, columns};
 use super::chunks::{Cut, Irregular};
 use super::number::{parse_digits, parse_real};
+use super::shells::not_negative;
 use crate::geometry::Point3;
 
 /// Standard widths of a `*NODE` card: id, x, y, z, translational and rotational constraint.
@@ -161,7 +162,7 @@ pub(crate) fn read_node_thickness(
                 first
             },
             step: card.id(EIGHT_BY_10, 3)?.max(1),
-            thickness: card.length_or_zero(EIGHT_BY_10, 1)?,
+            thickness: not_negative(card, EIGHT_BY_10, 1)?.unwrap_or(0.0),
             is_set,
         })
     };

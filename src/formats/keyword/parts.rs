@@ -1,6 +1,6 @@
 //! Parts, shell sections and `*CONTROL_SHELL`: titles, thickness, formulation, layers.
 
-use super::super::diagnostic::{DiagnosticKind, Diagnostics};
+use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
 use super::super::model::{Plies, Section, ShellControl, ShellFormulation};
 use super::super::text;
 use super::block::{Block, Cards};
@@ -80,7 +80,14 @@ pub(crate) fn read_parts(
             break;
         };
         match part(block, &heading, &card, &mut cards, offsets) {
-            Ok(part) => parts.push(part),
+            Ok(part) => {
+                if let Some(plies) = &part.plies {
+                    let thickness = plies.thickness.iter().sum();
+                    let what = format!("part {}", part.id);
+                    tell_nodes_off(&card, plies.nloc, thickness, &what, found);
+                }
+                parts.push(part);
+            }
             Err(error) => {
                 let what = format!("part {:?}", text::shown(heading.title()));
                 found.push_with(error.kind, || card.diagnose(&error, &what));
@@ -126,6 +133,7 @@ fn part(
         Some(Plies {
             thickness: read_plies(block, cards, offsets.length),
             elform: card.int_or_zero(EIGHT_BY_10, 1).unwrap_or(0),
+            nloc: card.real_or_zero(EIGHT_BY_10, 3).unwrap_or(0.0),
         })
     } else {
         pass_over_options(block, cards);
@@ -233,7 +241,12 @@ pub(crate) fn read_shell_sections(
             break;
         };
         match section(&first, &second, offsets) {
-            Ok(section) => sections.push((section, first.offset())),
+            Ok(section) => {
+                let [a, b, c, d] = section.thickness;
+                let what = format!("section {}", section.id);
+                tell_nodes_off(&second, section.nloc, (a + b + c + d) / 4.0, &what, found);
+                sections.push((section, first.offset()));
+            }
             Err((card, error)) => {
                 found.push_with(error.kind, || card.diagnose(&error, "the shell section"));
             }
@@ -261,8 +274,25 @@ fn section<'a, 'b>(
     Ok(Section {
         id: shifted(id, offsets.section),
         thickness,
+        nloc: second.real_or_zero(EIGHT_BY_10, 4).unwrap_or(0.0),
         formulation: ShellFormulation::new(elform, number(3), number(5)),
     })
+}
+
+/// Says how far the nodes lie off the mid-surface, if they do.
+fn tell_nodes_off(card: &Card<'_>, nloc: f64, thickness: f64, what: &str, found: &mut Diagnostics) {
+    if nloc == 0.0 {
+        return;
+    }
+    let kind = DiagnosticKind::OffMidSurface;
+    found.push_with(kind, || {
+        // Without digits that come from rounding.
+        let off = (nloc.abs() * thickness / 2.0) as f32;
+        let message = format!(
+            "the nodes of shells of {what} lie {off} off their mid-surface (NLOC {nloc}) and are taken to lie in it"
+        );
+        Diagnostic::new(kind, message).at(card.position(0))
+    });
 }
 
 /// Reads `*CONTROL_SHELL`; fields that cannot be read and cards that are missing keep what was there.

@@ -29,6 +29,7 @@ pub(super) fn finish(
     monitor: &Monitor,
 ) -> Result<Model, Cancelled> {
     let mut model = Model {
+        layout: assembly.layout,
         title: std::mem::take(&mut assembly.title),
         files: std::mem::take(&mut assembly.files),
         stated_units: assembly.unit_clues.units(),
@@ -58,6 +59,7 @@ pub(super) fn finish(
     monitor.check()?;
     tell_flat_shells(&assembly, &mut model);
     monitor.check()?;
+    tell_offsets(&mut assembly, &mut model);
     tell_no_elements(&mut assembly, &model);
     tell_other_units(&mut assembly, &model);
     model.raw_titles = std::mem::take(&mut assembly.raw_titles);
@@ -123,6 +125,26 @@ fn leave_out_nodes(repeated: &[u32], model: &mut Model) {
     }
 }
 
+/// Says that nodes lie off the mid-surface by the cards of their shells.
+fn tell_offsets(assembly: &mut Assembly, model: &mut Model) {
+    let offsets = assembly.offsets;
+    model.n_offset = offsets.n;
+    if offsets.n == 0 {
+        return;
+    }
+    let (n, s) = (offsets.n, if offsets.n == 1 { "" } else { "s" });
+    // Without digits that come from rounding.
+    let largest = offsets.largest as f32;
+    let message = format!(
+        "the nodes of {n} shell{s} lie up to {largest} off their mid-surface (*ELEMENT_SHELL_OFFSET) and are taken to \
+         lie in it"
+    );
+    let diagnostic = Diagnostic::new(DiagnosticKind::OffMidSurface, message);
+    assembly
+        .found
+        .push(with_position(diagnostic, whole_file(model)));
+}
+
 fn tell_no_elements(assembly: &mut Assembly, model: &Model) {
     if !model.shells.is_empty() || !model.solids.is_empty() {
         return;
@@ -130,7 +152,7 @@ fn tell_no_elements(assembly: &mut Assembly, model: &Model) {
     let kind = DiagnosticKind::NoElements;
     let message = match model.nodes.len() {
         0 => "the deck has neither nodes nor shells nor solids".to_owned(),
-        1 => "the deck has one node and neither shells nor solids".to_owned(),
+        1 => "the deck has 1 node and neither shells nor solids".to_owned(),
         n => format!("the deck has {n} nodes and neither shells nor solids"),
     };
     let diagnostic = with_position(Diagnostic::new(kind, message), whole_file(model));
@@ -322,8 +344,9 @@ fn node_thickness(
     Ok(at_node.into_iter().map(Option::unwrap_or_default).collect())
 }
 
-/// Carries out unit factors and transformations, the innermost include first. `*NODE_TRANSFORM`
-/// waits for all of them unless it asks to be carried out at once.
+/// Carries out unit factors, then transformations, the innermost include first. `*NODE_TRANSFORM`
+/// waits for all of them unless it asks to be carried out at once. The lengths of a transformation are in the unit
+/// of the whole deck, wherever it is defined and used, so the coordinates must be so before.
 fn carry_out_motions(
     assembly: &mut Assembly,
     model: &mut Model,
@@ -331,7 +354,14 @@ fn carry_out_motions(
     monitor: &Monitor,
 ) -> Result<(), Cancelled> {
     let mut motions = std::mem::take(&mut assembly.motions);
-    motions.sort_by_key(|motion| matches!(motion, Motion::NodeSet { at_once: None, .. }));
+    motions.sort_by_key(|motion| match motion {
+        Motion::Scale { .. } => 0,
+        Motion::Include { .. }
+        | Motion::NodeSet {
+            at_once: Some(_), ..
+        } => 1,
+        Motion::NodeSet { at_once: None, .. } => 2,
+    });
     for motion in motions {
         monitor.check()?;
         if let Err(diagnostic) = carry_out(assembly, model, results, &motion) {

@@ -105,8 +105,24 @@ pub(crate) struct ShellChunk {
     pub extras: Vec<ShellExtra>,
     /// Plies of the composite shells, of each by itself.
     pub stacks: Vec<Vec<f64>>,
+    pub offsets: ShellOffsets,
     pub diagnostics: Diagnostics,
     pub had_tabs: bool,
+}
+
+/// Shells whose nodes lie off their mid-surface by a card of their own.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct ShellOffsets {
+    pub n: usize,
+    /// The largest distance, without its sign.
+    pub largest: f64,
+}
+
+impl ShellOffsets {
+    pub(crate) fn add(&mut self, other: Self) {
+        self.n += other.n;
+        self.largest = self.largest.max(other.largest);
+    }
 }
 
 /// A shell's first card, ids as in the file.
@@ -201,8 +217,13 @@ impl Reader<'_> {
             let has_mid_side = shell.is_some_and(|shell| shell.mid_side[0] != 0);
             self.thickness(cards, kept, has_mid_side)?;
         }
-        for _ in 0..self.options.n_passed_over {
-            cards.next_line();
+        for index in 0..self.options.n_passed_over {
+            let Some((line, at)) = cards.next_line() else {
+                break;
+            };
+            if index == 0 && self.options.offset {
+                self.offset(&cards.card(line, at));
+            }
         }
         if self.options.plies {
             self.plies(cards, kept.is_some());
@@ -304,6 +325,17 @@ impl Reader<'_> {
             cards.next_line();
         }
         Ok(())
+    }
+
+    /// Counts an offset, which is not carried out.
+    fn offset(&mut self, card: &Card<'_>) {
+        let by = card.length_or_zero(FIVE_BY_16, 0).unwrap_or(0.0);
+        if by != 0.0 {
+            self.chunk.offsets.add(ShellOffsets {
+                n: 1,
+                largest: by.abs() * self.offsets.length,
+            });
+        }
     }
 
     /// What is said of the shell that was read last, if it was kept.

@@ -213,6 +213,35 @@ impl Transformation {
         }
     }
 
+    /// Multiplies all lengths in the rows by the unit factor of an include.
+    pub fn scale_lengths(&mut self, factor: f64) {
+        if factor == 1.0 {
+            return;
+        }
+        for row in &mut self.rows {
+            match row {
+                TransformRow::Translate(by) => *by *= factor,
+                TransformRow::TranslateAlongNodes { distance, .. } => *distance *= factor,
+                TransformRow::Rotate { through: place, .. }
+                | TransformRow::Point {
+                    position: place, ..
+                } => *place *= factor,
+                TransformRow::Mirror { point, toward } => {
+                    *point *= factor;
+                    *toward *= factor;
+                }
+                TransformRow::Matrix(matrix) => {
+                    matrix.fixed_view_mut::<3, 1>(0, 3).scale_mut(factor);
+                }
+                TransformRow::Scale(_)
+                | TransformRow::RotateAboutPoints { .. }
+                | TransformRow::RotateAboutNodes { .. }
+                | TransformRow::PositionByPoints(_)
+                | TransformRow::PositionByNodes(_) => {}
+            }
+        }
+    }
+
     fn points(&self) -> BTreeMap<u64, Point3> {
         let rows = self.rows.iter();
         rows.filter_map(|row| match row {

@@ -1,8 +1,9 @@
 //! Writes a model as a keyword deck: parts, sections, nodes, elements, sets, forming results.
 
-use super::super::model::{Model, Part, Shell, SolidKind};
+use super::super::model::{Material, Model, Part, Section, Shell, ShellFormulation, SolidKind};
 use super::card::Layout;
 use super::fixed_width::fixed_width;
+use super::materials::keyword_of;
 use crate::monitor::{Cancelled, Monitor};
 
 /// Rows between two questions whether the writing is still wanted.
@@ -42,6 +43,7 @@ pub fn write(
     };
     deck.head(model, options);
     deck.parts(model);
+    deck.materials(model);
     deck.nodes(model)?;
     deck.shells(model)?;
     deck.solids(model)?;
@@ -57,6 +59,7 @@ pub fn write(
 fn largest_id(model: &Model) -> u64 {
     let sections = model.sections.iter().map(|section| section.id);
     let parts = model.parts.iter().map(|part| part.id.max(part.section_id));
+    let materials = model.materials.iter().map(|material| material.id);
     let shells = model.shells.iter().map(|shell| shell.id);
     let solids = model.solids.iter().map(|solid| solid.id);
     let nodes = model.nodes.ids().iter().copied();
@@ -65,6 +68,7 @@ fn largest_id(model: &Model) -> u64 {
         .chain(solids)
         .chain(parts)
         .chain(sections)
+        .chain(materials)
         .max()
         .unwrap_or(0)
 }
@@ -100,34 +104,67 @@ impl Writer<'_> {
     }
 
     fn parts(&mut self, model: &Model) {
-        let mut sections: Vec<(u64, [f64; 4])> = model
-            .sections
-            .iter()
-            .map(|section| (section.id, section.thickness))
-            .collect();
+        let sections = model.sections.iter().copied();
+        let mut sections: Vec<SectionCards> = sections.map(SectionCards::from).collect();
         for part in model.parts.iter().filter(|part| part.is_defined) {
             let section_id = section_of(part, &mut sections);
             self.line("*PART");
             self.title(model, &part.title);
             self.int(part.id, 10);
             self.int(section_id, 10);
+            if part.material_id != 0 {
+                self.int(part.material_id, 10);
+            }
             self.end();
         }
-        for (id, thickness) in sections {
+        for section in sections {
             self.line("*SECTION_SHELL");
-            self.int(id, 10);
-            let known = model.sections.iter().find(|section| section.id == id);
-            match known.map(|section| section.formulation) {
+            self.int(section.id, 10);
+            match section.formulation {
                 Some(formulation) => {
                     let width = self.layout.width(10);
                     self.right(&formulation.elform.to_string(), width);
                     self.right("", width);
                     self.int(formulation.n_layers.into(), 10);
+                    if formulation.is_trapezoidal {
+                        self.right("", width);
+                        self.int(1, 10);
+                    }
                 }
                 None => self.int(2, 10),
             }
             self.end();
-            self.reals(&thickness, 10);
+            self.reals(&section.thickness, 10);
+            if section.nloc != 0.0 {
+                self.real(section.nloc, 10);
+            }
+            self.end();
+        }
+    }
+
+    /// What is known of the materials: enough to map from the deck, not to calculate with it.
+    fn materials(&mut self, model: &Model) {
+        let mut written: Vec<u64> = Vec::new();
+        for Material {
+            id,
+            law,
+            density,
+            modulus,
+        } in &model.materials
+        {
+            if written.contains(id) {
+                continue;
+            }
+            if written.is_empty() {
+                self.line("$ Of the materials only law, density and modulus are known:");
+                self.line("$ put their cards from the original deck here before a calculation.");
+            }
+            written.push(*id);
+            self.line(&format!("*{}", keyword_of(law)));
+            self.int(*id, 10);
+            if *density != 0.0 || *modulus != 0.0 {
+                self.reals(&[*density, *modulus], 10);
+            }
             self.end();
         }
     }
@@ -341,22 +378,58 @@ impl Writer<'_> {
     }
 }
 
+/// A `*SECTION_SHELL` as it is written.
+struct SectionCards {
+    id: u64,
+    thickness: [f64; 4],
+    nloc: f64,
+    /// `None` where the deck has no section.
+    formulation: Option<ShellFormulation>,
+}
+
+impl From<Section> for SectionCards {
+    fn from(section: Section) -> Self {
+        Self {
+            id: section.id,
+            thickness: section.thickness,
+            nloc: section.nloc,
+            formulation: Some(section.formulation),
+        }
+    }
+}
+
 /// The section a part names. A thickness that no section holds, as `*PART_COMPOSITE` gives it,
-/// gets a section of its own.
-fn section_of(part: &Part, sections: &mut Vec<(u64, [f64; 4])>) -> u64 {
-    let named = sections.iter().find(|(id, _)| *id == part.section_id);
+/// gets a section of its own, with a layer for each ply.
+fn section_of(part: &Part, sections: &mut Vec<SectionCards>) -> u64 {
+    let named = sections
+        .iter()
+        .find(|section| section.id == part.section_id);
     match (named, part.thickness) {
-        (Some(&(_, thickness)), Some(own)) if thickness != own => {}
+        (Some(section), Some(own)) if section.thickness != own => {}
         (None, Some(_)) => {}
         _ => return part.section_id,
     }
-    let own = part.thickness.expect("both arms above have a thickness");
     let id = if named.is_none() && part.section_id != 0 {
         part.section_id
     } else {
-        sections.iter().map(|(id, _)| id + 1).max().unwrap_or(1)
+        sections
+            .iter()
+            .map(|section| section.id + 1)
+            .max()
+            .unwrap_or(1)
     };
-    sections.push((id, own));
+    let of_named = named.map_or((0.0, None), |section| (section.nloc, section.formulation));
+    let (nloc, formulation) = part.plies.as_ref().map_or(of_named, |plies| {
+        let n_layers = plies.thickness.len() as f64;
+        let formulation = ShellFormulation::new(plies.elform, n_layers, 0.0);
+        (plies.nloc, Some(formulation))
+    });
+    sections.push(SectionCards {
+        id,
+        thickness: part.thickness.expect("both arms above have a thickness"),
+        nloc,
+        formulation,
+    });
     id
 }
 

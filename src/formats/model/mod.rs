@@ -168,6 +168,8 @@ pub struct Plies {
     pub thickness: Vec<f64>,
     /// Element formulation `ELFORM`; 0 where the card leaves it to `*CONTROL_SHELL`.
     pub elform: i64,
+    /// Where the nodes lie through the thickness, as in [`Section::nloc`].
+    pub nloc: f64,
 }
 
 impl Part {
@@ -186,11 +188,13 @@ pub struct Section {
     pub id: u64,
     /// Thickness at the four corners.
     pub thickness: [f64; 4],
+    /// Where the nodes lie through the thickness (`NLOC`): 0 in the middle, 1 at the top, −1 at the bottom.
+    pub nloc: f64,
     /// Element formulation, layers and rule.
     pub formulation: ShellFormulation,
 }
 
-/// `*MAT_…`: what a material is called and how stiff it is.
+/// `*MAT_…`: what a material is called, how heavy and how stiff it is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// The deck's material id.
@@ -198,6 +202,8 @@ pub struct Material {
     /// The law: its number where the keyword is one or a usual name ("24", "36"), else the keyword
     /// without `MAT_`.
     pub law: String,
+    /// Density in the deck's unit; 0 where the card's second field is none.
+    pub density: f64,
     /// Young's modulus in the deck's unit; 0 where the card's third field is none.
     pub modulus: f64,
 }
@@ -332,6 +338,8 @@ pub struct ReadFile {
 pub struct Model {
     /// What the file is.
     pub format: Format,
+    /// Width of the deck's fields where a keyword says nothing.
+    pub layout: Layout,
     /// The deck's title; empty if it has none.
     pub title: String,
     /// Titles as the file has them, where they are not shown byte by byte.
@@ -350,6 +358,8 @@ pub struct Model {
     /// Thickness of the plies, from the bottom side up, of shells that have their own (`_COMPOSITE`); stacks that
     /// are alike stand here once.
     pub ply_stacks: Vec<Vec<f64>>,
+    /// How many shells have a distance of their nodes from the mid-surface on a card (`_OFFSET`), which is not kept.
+    pub n_offset: usize,
     /// Solids and thick shells whose nodes all exist.
     pub solids: Vec<Solid>,
     /// Parts, the defined ones and those that only elements name, in the order they were met.
