@@ -152,7 +152,8 @@ struct MapOutputArgs {
     /// Status, distances and values of every crash element as CSV.
     #[arg(long, value_name = "FILE|-")]
     csv: Option<PathBuf>,
-    /// The elements without values of their own, one *SET_SHELL_LIST for each reason.
+    /// The elements that are not wholly mapped, one *SET_SHELL_LIST for each status; its title says whether they
+    /// carry values.
     #[arg(long, value_name = "FILE|-")]
     unmapped: Option<PathBuf>,
     /// The result of another mapper, or the solver's own file of mapped states (INCOUT): differences
@@ -433,6 +434,16 @@ fn check_usage(args: &MapArgs) -> anyhow::Result<()> {
         let what = "--out - has room for one file";
         return refuse(format!(
             "{what}; write it with --write part or deck and without --replace-states, or name a file"
+        ));
+    }
+    let is_device = |path: &&PathBuf| path.exists() && !path.is_file() && !path.is_dir();
+    if let Some(device) = output.out.as_ref().filter(is_device)
+        && !is_one_file
+    {
+        return refuse(format!(
+            "--out {} is no file and has room for one alone; write it with --write part or deck and without \
+             --replace-states, or name a file",
+            device.display()
         ));
     }
     let n_parts = args.choice.stamped_part.len();

@@ -190,9 +190,13 @@ fn write(
     } else {
         output.write(input, path, &silent)?
     };
-    if matches!(output, Output::Cards(_)) && is_printing {
-        for note in notes {
-            print(&format!("Cards    {}; {note}\n", path.display()))?;
+    for note in notes {
+        match output {
+            Output::Cards(_) if is_printing => {
+                print(&format!("Cards    {}; {note}\n", path.display()))?;
+            }
+            Output::Mesh(_) => log::warn!("{}: {note}", path.display()),
+            _ => {}
         }
     }
     Ok(())

@@ -55,8 +55,13 @@ impl From<FieldError> for ReadBackError {
 
 /// The pose `crash_from_stamped` that a text of cards holds, mirror included.
 pub fn read_back(text: &str) -> Result<Similarity, ReadBackError> {
+    read_back_in(text, Layout::Standard)
+}
+
+/// The same in a deck whose fields are those of `layout` where a keyword has no suffix.
+pub fn read_back_in(text: &str, layout: Layout) -> Result<Similarity, ReadBackError> {
     let file = SourceFile::new("cards", text);
-    for block in Blocks::new(&file, Layout::Standard) {
+    for block in Blocks::new(&file, layout) {
         let name = block.name.as_str();
         if name.starts_with("DEFINE_TRANSFORMATION") {
             return transformation(&block);

@@ -1,13 +1,17 @@
 //! LS-DYNA cards that carry a pose: `*INCLUDE_STAMPED_PART_MATRIX`, its inverse form, and
 //! `*DEFINE_TRANSFORMATION` with `*INCLUDE_TRANSFORM`.
 //!
-//! A card has ten columns a number. Every text written here is read back at once by the same code
-//! that reads decks, so that the error of rounding is known and not assumed.
+//! A card has ten columns a number, or twenty in a long deck. Every text written here is read back at once by the
+//! same code that reads decks, so that the error of rounding is known and not assumed.
 
+mod file_name;
+
+use crate::formats::keyword::card::Layout;
 use crate::formats::keyword::fixed_width::fixed_width;
 use crate::geometry::{Aabb, Matrix3, MatrixError, Point3, Similarity, Vector3};
 
-pub use super::card_reader::{ReadBackError, read_back};
+pub use super::card_reader::{ReadBackError, read_back, read_back_in};
+pub use file_name::{check_file_name, file_name_fault, name_lines};
 
 /// A set of cards that aligns the stamped part with the crash part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -56,6 +60,25 @@ pub enum Receiver {
     Set(u64),
 }
 
+/// What `*INCLUDE_TRANSFORM` adds to ids; 0 for those that keep theirs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct IdOffsets {
+    /// To those of nodes.
+    pub node: u64,
+    /// To those of elements.
+    pub element: u64,
+    /// To those of parts.
+    pub part: u64,
+    /// To those of materials.
+    pub material: u64,
+    /// To those of sets.
+    pub set: u64,
+    /// To those of curves and of what else `*DEFINE` makes.
+    pub curve: u64,
+    /// To those of sections and all other kinds.
+    pub section: u64,
+}
+
 /// What the cards hold besides the pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CardOptions {
@@ -70,10 +93,12 @@ pub struct CardOptions {
     pub mapped_percent: f64,
     /// Id of the transformation.
     pub transformation_id: u64,
-    /// Added to the node and element ids of the stamped mesh where it joins the crash model.
-    pub id_offset: u64,
-    /// Twenty columns a number (`+` after the keyword) in place of ten.
-    pub is_long: bool,
+    /// Added to the ids of the stamped mesh where it joins the crash model.
+    pub offsets: IdOffsets,
+    /// Format of the deck that takes the cards. Where it is not the standard one, every keyword has a suffix.
+    pub deck_layout: Layout,
+    /// Format of the stamped file. The suffix of the card that includes it names it and holds for the card too.
+    pub stamped_layout: Layout,
     /// Box around the stamped part: where rounding errors count.
     pub bounds: Aabb,
     /// Lines for the head: files, build, fit.
@@ -88,8 +113,9 @@ impl Default for CardOptions {
             search_radius: 20.0,
             mapped_percent: 0.0,
             transformation_id: 1,
-            id_offset: 0,
-            is_long: false,
+            offsets: IdOffsets::default(),
+            deck_layout: Layout::Standard,
+            stamped_layout: Layout::Standard,
             bounds: Aabb {
                 min: Point3::from([-5000.0; 3]),
                 max: Point3::from([5000.0; 3]),
@@ -163,59 +189,6 @@ impl Cards {
     }
 }
 
-/// Most columns of a file name on cards.
-const MAX_NAME: usize = 236;
-
-/// What keeps a deck from including a file of this name, in words after "its name"; `None` if
-/// nothing does. A line of a deck that begins with `$` is a comment and with `*` a keyword, and a
-/// name that ends with ` +` goes on in the next line.
-pub fn file_name_fault(name: &str) -> Option<&'static str> {
-    if name.is_empty() {
-        Some("is empty")
-    } else if name.chars().any(char::is_control) {
-        Some("has a line break or another control character")
-    } else if name.starts_with('$') {
-        Some("begins with $, which makes a comment of it")
-    } else if name.starts_with('*') {
-        Some("begins with *, which makes a keyword of it")
-    } else if name.starts_with('&') {
-        Some("begins with &, which makes a parameter of it")
-    } else if name.trim() != name {
-        Some("begins or ends with a blank")
-    } else if name.ends_with(" +") {
-        Some("ends with \" +\", which continues it in the next line")
-    } else if name.chars().count() > MAX_NAME {
-        Some("has more than 236 characters")
-    } else {
-        None
-    }
-}
-
-/// [`file_name_fault`] as an error.
-pub fn check_file_name(name: &str) -> Result<(), CardError> {
-    match file_name_fault(name) {
-        None => Ok(()),
-        Some(fault) => Err(CardError::FileName {
-            name: name.to_owned(),
-            fault,
-        }),
-    }
-}
-
-/// The lines of a deck that a file name takes, of at most 80 columns.
-pub fn name_lines(name: &str) -> Vec<String> {
-    let characters: Vec<char> = name.chars().collect();
-    let (mut rest, mut lines) = (&characters[..], Vec::new());
-    // The last line may be full; the others need two columns for the sign that they go on.
-    while rest.len() > 80 {
-        let (line, after) = rest.split_at(78);
-        lines.push(line.iter().collect::<String>() + " +");
-        rest = after;
-    }
-    lines.push(rest.iter().collect());
-    lines
-}
-
 /// Writes the pose `crash_from_stamped` as cards and reads them back. A mirrored pose becomes a
 /// mirror in the plane x = 0 of the stamped part and a rotation after it.
 pub fn write(
@@ -245,10 +218,10 @@ fn proper_part(motion: &Similarity) -> Similarity {
     }
 }
 
-fn finish(text: String, asked: &Similarity) -> Result<Cards, CardError> {
-    let read_back = read_back(&text)?;
+fn finish(sheet: Sheet, asked: &Similarity) -> Result<Cards, CardError> {
+    let read_back = read_back_in(&sheet.text, sheet.deck_layout)?;
     Ok(Cards {
-        text,
+        text: sheet.text,
         read_back,
         asked: *asked,
     })
@@ -259,15 +232,15 @@ struct Sheet {
     text: String,
     /// Columns of a number.
     width: usize,
-    suffix: &'static str,
+    deck_layout: Layout,
 }
 
 impl Sheet {
     fn new(options: &CardOptions) -> Self {
         Self {
             text: String::new(),
-            width: if options.is_long { 20 } else { 10 },
-            suffix: if options.is_long { "+" } else { "" },
+            width: options.deck_layout.width(10),
+            deck_layout: options.deck_layout,
         }
     }
 
@@ -276,8 +249,14 @@ impl Sheet {
         self.text.push('\n');
     }
 
-    fn keyword(&mut self, name: &str) {
-        self.line(&format!("*{name}{}", self.suffix));
+    /// Begins a keyword whose cards have the fields of a layout.
+    fn keyword(&mut self, name: &str, layout: Layout) {
+        self.width = layout.width(10);
+        if [layout, self.deck_layout] == [Layout::Standard; 2] {
+            self.line(&format!("*{name}"));
+        } else {
+            self.line(&format!("*{name}{}", char::from(layout.suffix())));
+        }
     }
 
     fn comments(&mut self, lines: &[String]) {
@@ -389,7 +368,7 @@ fn stamped_part(
         (forward, center)
     };
     let mut sheet = Sheet::new(options);
-    let rotation = rounded(&motion.rotation, sheet.width)?;
+    let rotation = rounded(&motion.rotation, options.stamped_layout.width(10))?;
     let translation = balanced(&motion, &rotation, &center);
     sheet.comments(&options.comments);
     sheet.line(if is_inverse {
@@ -412,7 +391,8 @@ fn stamped_part(
         Receiver::Set(id) => ("SET", id),
     };
     let inverse = if is_inverse { "_INVERSE" } else { "" };
-    sheet.keyword(&format!("INCLUDE_STAMPED_{target}_MATRIX{inverse}"));
+    let name = format!("INCLUDE_STAMPED_{target}_MATRIX{inverse}");
+    sheet.keyword(&name, options.stamped_layout);
     sheet.file_name(&options.file_name)?;
     sheet.names("pid thick pstrn strain stress incout - rmax");
     let zero = sheet.int(0)?;
@@ -448,7 +428,7 @@ fn stamped_part(
     sheet.line(&fields.concat());
     sheet.reals(&[0.0; 3])?;
     sheet.reals(&[0.0; 6])?;
-    finish(sheet.text, asked)
+    finish(sheet, asked)
 }
 
 /// Tries the ways to write the motion and takes the one that reads back best.
@@ -483,7 +463,7 @@ fn transform_cards(
     sheet.line(
         "$ The transformation carries the stamped part to the crash part; rows apply in turn",
     );
-    sheet.keyword("DEFINE_TRANSFORMATION");
+    sheet.keyword("DEFINE_TRANSFORMATION", options.deck_layout);
     sheet.ints(&[options.transformation_id])?;
     sheet.names("option a1 a2 a3 a4 a5 a6 a7");
     if asked.is_mirrored() {
@@ -502,18 +482,26 @@ fn transform_cards(
         Way::Rotate => rotate_rows(&mut sheet, &motion, &center)?,
         Way::Points(length) => point_rows(&mut sheet, &motion, &center, length)?,
     }
-    sheet.keyword("INCLUDE_TRANSFORM");
+    sheet.keyword("INCLUDE_TRANSFORM", options.stamped_layout);
     sheet.file_name(&options.file_name)?;
     sheet.names("idnoff ideoff idpoff idmoff idsoff idfoff iddoff");
-    let offset = options.id_offset;
-    sheet.ints(&[offset, offset, 0, 0, 0, 0, 0])?;
+    let by = options.offsets;
+    sheet.ints(&[
+        by.node,
+        by.element,
+        by.part,
+        by.material,
+        by.set,
+        by.curve,
+        by.curve,
+    ])?;
     sheet.names("idroff");
-    sheet.ints(&[0])?;
+    sheet.ints(&[by.section])?;
     sheet.names("fctmas fcttim fctlen");
     sheet.reals(&[1.0; 3])?;
     sheet.names("tranid");
     sheet.ints(&[options.transformation_id])?;
-    finish(sheet.text, asked)
+    finish(sheet, asked)
 }
 
 fn rotate_rows(sheet: &mut Sheet, motion: &Similarity, center: &Point3) -> Result<(), CardError> {
@@ -526,7 +514,7 @@ fn rotate_rows(sheet: &mut Sheet, motion: &Similarity, center: &Point3) -> Resul
         }
         sheet.option_row("ROTATE", &fields);
         // What the row does as it reads back decides what is left for the translation.
-        turned = read_back(&sheet.text)?;
+        turned = read_back_in(&sheet.text, sheet.deck_layout)?;
         if turned.is_mirrored() {
             turned = turned.after(&Similarity::mirror_x());
         }

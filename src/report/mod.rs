@@ -13,7 +13,9 @@ mod pose;
 mod record;
 mod starts;
 
-pub use cards::{CardError, CardForm, CardOptions, Cards, Receiver, write as write_cards};
+pub use cards::{
+    CardError, CardForm, CardOptions, Cards, IdOffsets, Receiver, write as write_cards,
+};
 pub use info::{Bounds, DiagnosticInfo, FileInfo, FormingInfo, ModelInfo, PartInfo};
 pub use matrix::{MatrixForm, ParsedMatrix, number, parse_matrix};
 pub use pose::{AxisAngle, PoseRecord, SampleNode};

@@ -874,3 +874,46 @@ fn several_stamped_files_and_several_crash_parts() {
     ]);
     assert_eq!(rows, ["102 8 mapped 0.9"]);
 }
+
+#[test]
+fn sets_of_elements_have_the_format_of_the_crash_deck() {
+    for (keyword, width) in [
+        ("*KEYWORD\n", 10),
+        ("*KEYWORD I10=Y\n", 10),
+        ("*KEYWORD LONG=Y\n", 20),
+    ] {
+        let mut deck = keyword.to_owned();
+        deck += &format!("*PART-\nsheet\n{:>10}{:>10}\n", 7, 7);
+        deck += &format!(
+            "*SECTION_SHELL-\n{:>10}{:>10}\n{}\n",
+            7,
+            2,
+            "       1.0".repeat(4)
+        );
+        deck += "*NODE-\n";
+        for (id, x, y) in [
+            (1, 0, 0),
+            (2, 10, 0),
+            (3, 10, 10),
+            (4, 0, 10),
+            (5, 90, 0),
+            (6, 90, 10),
+        ] {
+            deck += &format!("{id:>8}{x:>16}{y:>16}{:>16}\n", 0);
+        }
+        deck += "*ELEMENT_SHELL-\n";
+        for (id, nodes) in [(101, [1, 2, 3, 4]), (102, [2, 5, 6, 3])] {
+            let [a, b, c, d] = nodes;
+            deck += &format!("{id:>8}{:>8}{a:>8}{b:>8}{c:>8}{d:>8}\n", 7);
+        }
+        let pair = Pair::new(&(deck + "*END\n"), &stamped(1, ""));
+        let output = pair.map(&["--quantities", "thickness", "--unmapped", "sets.k"]);
+        assert!(output.status.success(), "{}", errors(&output));
+        let sets = std::fs::read_to_string(pair.path("sets.k")).unwrap();
+        assert!(sets.starts_with(keyword), "{sets}");
+        assert!(
+            sets.contains(&format!("\n{:>width$}\n{:>width$}\n", 1, 102)),
+            "{sets}"
+        );
+    }
+}

@@ -520,6 +520,14 @@ fn unmapped_elements_come_as_sets_by_reason() {
             "{}",
             set.title
         );
+        let has_values = ["partly", "filled", "two-layers", "conflict"];
+        let has_values = has_values.contains(&row["status"].as_str().unwrap());
+        let values = if has_values {
+            ": with values"
+        } else {
+            ": no values"
+        };
+        assert!(set.title.ends_with(values), "{}", set.title);
     }
 }
 

@@ -1,12 +1,15 @@
-//! The elements that carry no values of their own, as one set for each reason.
+//! The elements that are not wholly mapped, as one set for each status.
 
 use super::MapRun;
+use super::head::keyword_line;
 use crate::formats::Model;
+use crate::formats::keyword::card::Layout;
 use crate::mapping::Status;
 use crate::monitor::{Cancelled, Monitor};
 
 /// `*SET_SHELL_LIST_TITLE` for each status but *mapped*, with ids that no set of the deck has; a deck of
-/// its own. Ids stand in fields of ten, or of twenty (`LONG=Y`) where they are longer.
+/// its own in the crash deck's format, or a long one (`LONG=Y`) where ids have more than ten digits. Each title says
+/// whether the elements carry values all the same.
 pub fn unmapped_sets(run: &MapRun, model: &Model, monitor: &Monitor) -> Result<String, Cancelled> {
     let ids = run
         .shells
@@ -14,13 +17,13 @@ pub fn unmapped_sets(run: &MapRun, model: &Model, monitor: &Monitor) -> Result<S
         .map(|&shell| model.shells[shell as usize].id);
     let largest = ids.clone().max().unwrap_or(0);
     let first_set = 1 + model.sets.shells.keys().max().copied().unwrap_or(0);
-    let is_long = largest.max(first_set + 9) > 9_999_999_999;
-    let width = if is_long { 20 } else { 10 };
-    let mut text = String::from(if is_long {
-        "*KEYWORD LONG=Y\n"
+    let layout = if largest.max(first_set + 9) > 9_999_999_999 {
+        Layout::Long
     } else {
-        "*KEYWORD\n"
-    });
+        model.layout
+    };
+    let width = layout.width(10);
+    let mut text = keyword_line(layout);
     let mut set = first_set;
     for status in Status::ALL.into_iter().filter(|s| *s != Status::Mapped) {
         monitor.check()?;
@@ -32,7 +35,13 @@ pub fn unmapped_sets(run: &MapRun, model: &Model, monitor: &Monitor) -> Result<S
         if members.is_empty() {
             continue;
         }
-        text += &format!("*SET_SHELL_LIST_TITLE\n{}\n{set:>width$}\n", status.label());
+        let values = if status.has_values() {
+            "with values"
+        } else {
+            "no values"
+        };
+        let title = format!("{}: {values}", status.label());
+        text += &format!("*SET_SHELL_LIST_TITLE\n{title}\n{set:>width$}\n");
         for row in members.chunks(8) {
             for id in row {
                 text += &format!("{id:>width$}");

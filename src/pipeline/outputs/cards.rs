@@ -1,5 +1,7 @@
 //! LS-DYNA cards for a match, with the fields filled from what was measured.
 
+mod shared_ids;
+
 use std::path::{Component, Path, PathBuf};
 
 use crate::assess::Verdict;
@@ -9,9 +11,10 @@ use crate::pipeline::load::LoadedPart;
 use crate::pipeline::match_parts::MatchRun;
 use crate::pipeline::units::PairUnits;
 use crate::report::cards::{check_file_name, file_name_fault, two_sheets};
-use crate::report::{CardForm, CardOptions, Cards, Receiver, build_id, write_cards};
+use crate::report::{CardForm, CardOptions, Cards, IdOffsets, Receiver, build_id, write_cards};
 use crate::role::PerRole;
 use crate::text::Lengths;
+use shared_ids::SharedIds;
 
 /// Writes the cards of a match and reads them back. They name the stamped file as it lies from `folder`, where
 /// they will stand; by its name alone without one.
@@ -44,6 +47,13 @@ pub fn cards(
     comments.extend(PairUnits::sentences(parts));
     comments.extend(PairUnits::stress_warning(parts));
     comments.extend(no_deck(stamped));
+    let mut offsets = IdOffsets::default();
+    if form == CardForm::IncludeTransform
+        && let Some(shared) = SharedIds::of(parts)
+    {
+        offsets = shared.offsets();
+        comments.push(shared.told(stamped));
+    }
     comments.push(build_id());
     let options = CardOptions {
         file_name: folder
@@ -53,6 +63,9 @@ pub fn cards(
         search_radius: coverage.limit,
         mapped_percent: (100.0 * coverage.target_on_source.overlap - 1.0).max(0.0),
         bounds: stamped.mesh.aabb(),
+        offsets,
+        deck_layout: crash.model.layout,
+        stamped_layout: stamped.model.layout,
         comments,
         ..CardOptions::default()
     };
@@ -75,11 +88,13 @@ pub fn notes(
     });
     let is_stamped = form != CardForm::IncludeTransform;
     let two_sheets = two_sheets(&run.crash_from_stamped, &parts.stamped.mesh.aabb());
+    let shared = SharedIds::of(parts).filter(|_| !is_stamped);
     let rounding = format!("read back: rounding moves no node by more than {error:.1e}{unit}");
     let all = [
         Some(rounding),
         poor,
         two_sheets.filter(|_| is_stamped),
+        shared.map(|shared| shared.told(parts.stamped)),
         no_deck(parts.stamped),
     ];
     all.into_iter().flatten().collect()

@@ -11,6 +11,7 @@ use crate::pipeline::PipelineError;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::units::PairUnits;
 use crate::report::build_id;
+use crate::text::counted;
 
 /// A mesh in a format.
 pub fn mesh_bytes(
@@ -51,6 +52,35 @@ pub fn part_bytes(
         ..WriteOptions::default()
     };
     Ok(write(&model, &options, monitor)?)
+}
+
+/// What a deck of a part lacks that the deck it was read from has, in words; `None` for nothing.
+pub fn left_out(part: &LoadedPart) -> Option<String> {
+    let model = &part.model;
+    let of_shells = model.shell_extras.iter();
+    let n_stacks = of_shells.filter(|extra| extra.plies.is_some()).count();
+    let n_parts = model
+        .parts
+        .iter()
+        .filter(|part| part.plies.is_some())
+        .count();
+    let mut lacks = Vec::new();
+    if n_stacks > 0 {
+        lacks.push(format!("the plies of {}", counted(n_stacks, "shell")));
+    }
+    if n_parts > 0 {
+        lacks.push(format!("the plies of {}", counted(n_parts, "part")));
+    }
+    if !lacks.is_empty() {
+        lacks.push("which have the sum of their thicknesses".to_owned());
+    }
+    if model.n_offset > 0 {
+        lacks.push(format!(
+            "the offset of {}",
+            counted(model.n_offset, "shell")
+        ));
+    }
+    (!lacks.is_empty()).then(|| format!("left out of the deck: {}", lacks.join(", ")))
 }
 
 /// What the head of a written deck says: where it comes from, units, build.

@@ -374,7 +374,9 @@ impl Output {
             Self::Mesh(mesh) => {
                 let format = format.ok_or(PipelineError::Lacks("a mesh format"))?;
                 let bytes = mesh.make(input, format, monitor)?;
-                let notes = Vec::new();
+                let part = input.parts.get(mesh.role()).as_deref();
+                let whole = part.filter(|_| format == Format::Keyword && !mesh.is_reduced());
+                let notes = whole.and_then(deck::left_out).into_iter().collect();
                 return Ok(Made { bytes, notes });
             }
             Self::Mapped(kind) => return mapped::deck(kind, input, monitor),

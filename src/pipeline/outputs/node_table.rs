@@ -97,7 +97,9 @@ pub fn node_table(
     comments.extend(PairUnits::sentences(parts));
     comments.extend([
         "x y z: where the node lies in the crash part's frame, stamped nodes moved".to_owned(),
-        format!("distance: to the other part, {sign}"),
+        format!(
+            "distance: to the other part, {sign}; beside a border of it the height over its sheet"
+        ),
         format!(
             "class: matched within {}; off: {}; only_here: {}, because the other part ends there",
             field.limit,

@@ -33,8 +33,13 @@ proptest! {
     fn every_form_keeps_nodes_within_a_micrometre(motion in any_pose()) {
         let corners = CardOptions::default().bounds.corners();
         for &form in CardForm::ALL {
-            for is_long in [false, true] {
-                let options = CardOptions { is_long, ..CardOptions::default() };
+            for layout in [Layout::Standard, Layout::I10, Layout::Long] {
+                let is_long = layout == Layout::Long;
+                let options = CardOptions {
+                    deck_layout: layout,
+                    stamped_layout: layout,
+                    ..CardOptions::default()
+                };
                 let cards = write(form, &motion, &options).unwrap();
                 let limit = if is_long { 1e-9 } else { 1e-3 };
                 let error = cards.largest_node_error(&corners);
