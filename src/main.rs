@@ -14,6 +14,10 @@ fn main() -> ExitCode {
     // It may stand behind options.
     cli::refuse_unknown(cli.files.first().map(|file| file.as_os_str()));
     start_logging(cli.quiet);
+    #[cfg(unix)]
+    if let Err(error) = shapematch::pipeline::write_file::clean_up_on_signals() {
+        log::warn!("half-written files will stay where the program is interrupted: {error}");
+    }
     if let Err(error) = threads(&cli).build_global() {
         log::warn!("the number of threads could not be set: {error}");
     }

@@ -3,6 +3,7 @@
 use std::fs::{self, File, Metadata};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use tempfile::NamedTempFile;
 
@@ -11,8 +12,54 @@ use crate::monitor::{Cancelled, Monitor};
 
 /// Bytes that are written and flushed between two questions for a cancel.
 const PIECE: usize = 8 << 20;
+/// Files that are being written and have no name of their own yet.
+static UNFINISHED: Unfinished = Unfinished(Mutex::new(Vec::new()));
 /// Links that are followed before a path counts as a loop.
 const MAX_LINKS: usize = 40;
+
+/// Temporary files, to be removed where the program is ended from outside.
+struct Unfinished(Mutex<Vec<PathBuf>>);
+
+impl Unfinished {
+    /// Makes one, and forgets those that are gone or have got their name.
+    fn add(&self, make: impl FnOnce() -> io::Result<NamedTempFile>) -> io::Result<NamedTempFile> {
+        // Under the lock, so that none is made without being listed.
+        let mut paths = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let file = make()?;
+        paths.retain(|path| path.exists());
+        paths.push(file.path().to_path_buf());
+        Ok(file)
+    }
+
+    /// Removes all of them. None is made while `then` runs.
+    #[cfg(any(unix, test))]
+    fn remove_then(&self, then: impl FnOnce()) {
+        let mut paths = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        for path in paths.drain(..) {
+            // One that has got its name is not there any more.
+            let _ = fs::remove_file(path);
+        }
+        then();
+    }
+}
+
+/// Removes what is half written when the program is ended by Ctrl+C or by another program, and then ends it as it
+/// would have ended.
+#[cfg(unix)]
+pub fn clean_up_on_signals() -> io::Result<()> {
+    use signal_hook::consts::{SIGINT, SIGTERM};
+    let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM])?;
+    std::thread::Builder::new()
+        .name("signals".to_owned())
+        .spawn(move || {
+            if let Some(signal) = signals.forever().next() {
+                UNFINISHED.remove_then(|| {
+                    let _ = signal_hook::low_level::emulate_default_handler(signal);
+                });
+            }
+        })?;
+    Ok(())
+}
 
 /// Writes a file so that its name stands for the old content or for all of the new one, whatever
 /// happens meanwhile: the bytes go to a new file beside it, are flushed to the disk, and take its
@@ -126,7 +173,7 @@ pub(super) fn new_file_in(folder: &Path) -> io::Result<NamedTempFile> {
     }
     // The error would name the file, which nobody asked for.
     let unnamed = |error: io::Error| io::Error::from(error.kind());
-    builder.tempfile_in(folder).map_err(unnamed)
+    UNFINISHED.add(|| builder.tempfile_in(folder).map_err(unnamed))
 }
 
 /// Gives the new file the owner of the old one, where the system lets us.
@@ -198,6 +245,18 @@ mod tests {
         let fresh = folder.path().join("b.k");
         assert!(write_with(&fresh, full_disk).is_err());
         assert_eq!(names(folder.path()), ["a.k"], "nothing is left behind");
+    }
+
+    #[test]
+    fn files_that_are_being_written_go_where_the_program_ends() {
+        let folder = tempfile::tempdir().unwrap();
+        let unfinished = Unfinished(Mutex::new(Vec::new()));
+        let make = || tempfile::Builder::new().tempfile_in(folder.path());
+        let first = unfinished.add(make).unwrap();
+        first.persist(folder.path().join("whole")).unwrap();
+        let _second = unfinished.add(make).unwrap();
+        assert_eq!(names(folder.path()).len(), 2);
+        unfinished.remove_then(|| assert_eq!(names(folder.path()), ["whole"]));
     }
 
     #[test]
