@@ -205,7 +205,8 @@ pub struct ReduceArgs {
     /// Maximum number of triangles.
     #[arg(long, short = 'n', value_name = "N", allow_negative_numbers = true, value_parser = at_least_one)]
     pub triangles: usize,
-    /// File to write; its extension selects the format (.k, .stl, .ply, .obj).
+    /// File to write; its extension selects the format (.k, .dynain, .stl, .ply, .obj). It holds one part, whatever
+    /// parts the triangles come from.
     #[arg(long, short, value_name = "FILE")]
     pub out: PathBuf,
     /// Another folder to search for included files; may be given several times.

@@ -11,7 +11,8 @@ use super::map::MapValues;
 use super::map_choices::{HandName, default_thickness};
 use super::of_each::{LengthFactors, StressFactors, of_file};
 use super::{
-    NamedFiles, UsageError, check_outputs, json_target, print, progress, takes_stdout, write_json,
+    NamedFiles, UsageError, check_outputs, is_stdout, json_target, print, progress, takes_stdout,
+    write_json,
 };
 use crate::formats::ReadOptions;
 use crate::pipeline::load::{LoadSettings, load, usual_selection};
@@ -71,8 +72,18 @@ Examples:
 
 Exit status: 0 every stamped part is mapped, 1 failed or one of them is not, 2 wrong usage.";
 
-/// Reads, finds, maps, writes, and prints the table.
+/// Reads, finds, maps, writes, and prints the table. A folder that was made for this and stays empty goes again.
 pub fn run(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
+    let was_there = args.out.exists();
+    let done = map_all(args, quiet);
+    if !was_there {
+        // Fails for any other folder.
+        let _ = std::fs::remove_dir(&args.out);
+    }
+    done
+}
+
+fn map_all(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     args.lengths.check(args.stamped.len())?;
     let stress_factors = args.stresses.checked(args.stamped.len())?;
     let monitor = progress::monitor(quiet);
@@ -170,6 +181,9 @@ fn left_behind(folder: &Path) -> String {
 
 /// Makes the folder if the one above it is there.
 fn make_folder(folder: &Path) -> anyhow::Result<()> {
+    if is_stdout(folder) {
+        return Err(UsageError("--out takes a folder, and - is none".to_owned()).into());
+    }
     if folder.is_dir() {
         return Ok(());
     }

@@ -273,7 +273,15 @@ pub fn map_parts(
                 .iter()
                 .map(|placed| placed.part.file_name())
                 .collect();
-            return Err(PipelineError::NoResults(names.join(", ")));
+            let parts = stamped.iter().map(|placed| placed.part);
+            let reasons = parts
+                .filter(|_| wanted.strain)
+                .filter_map(warnings::local_strains);
+            let mut what = names.join(", ");
+            for reason in reasons {
+                what += &format!("; {reason}");
+            }
+            return Err(PipelineError::NoResults(what));
         }
         other => other?,
     };

@@ -278,7 +278,7 @@ fn repeated_elements(part: &LoadedPart) -> Option<String> {
 }
 
 /// Says which strains are left out.
-fn local_strains(part: &LoadedPart) -> Option<String> {
+pub(super) fn local_strains(part: &LoadedPart) -> Option<String> {
     let what = |n| {
         let rest = match n {
             1 => "of its element is",
