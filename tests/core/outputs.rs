@@ -5,6 +5,9 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use shapematch::formats::{self, Model, ReadOptions};
+use shapematch::monitor::Monitor;
+
 fn shapematch(folder: &Path, args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_shapematch"))
         .current_dir(folder)
@@ -231,4 +234,189 @@ fn after_title(text: &str) -> String {
     lines.next();
     let rest: Vec<&str> = lines.collect();
     rest.join("\n")
+}
+
+/// A deck in which all keywords but the first have the suffix of the standard format.
+fn with_suffixes(deck: &str, keyword: &str) -> String {
+    let mut text = format!("{keyword}\n");
+    for line in deck.lines().filter(|line| !line.starts_with("*KEYWORD")) {
+        let suffix = if line.starts_with('*') && line != "*END" {
+            "-"
+        } else {
+            ""
+        };
+        text += &format!("{line}{suffix}\n");
+    }
+    text
+}
+
+fn read(path: &Path) -> Model {
+    formats::read(path, &ReadOptions::default(), &Monitor::silent()).unwrap()
+}
+
+#[test]
+fn cards_have_the_format_of_the_deck_that_takes_them() {
+    let folder = pair();
+    let at = |name: &str| folder.path().join(name);
+    let mesh = fs::read_to_string(at("mesh.k")).unwrap();
+    let n_nodes = read(&at("stamped.dynain")).nodes.len();
+    for keyword in ["*KEYWORD LONG=Y", "*KEYWORD I10=Y"] {
+        fs::write(at("wide.k"), with_suffixes(&mesh, keyword)).unwrap();
+        let taken = format!("{keyword}\n*INCLUDE\ncards.k\n*END\n");
+        fs::write(at("with_cards.k"), taken).unwrap();
+        for form in ["transform", "stamped", "stamped-inverse"] {
+            let line = [
+                "match",
+                "wide.k",
+                "stamped.dynain",
+                "--cards",
+                "cards.k",
+                "--card-form",
+                form,
+            ];
+            let output = shapematch(folder.path(), &line);
+            assert!(
+                output.status.success(),
+                "{keyword} {form}: {}",
+                said(&output)
+            );
+            let model = read(&at("with_cards.k"));
+            if form == "transform" {
+                let found: Vec<String> =
+                    model.diagnostics.iter().map(ToString::to_string).collect();
+                assert!(
+                    !found.iter().any(|told| told.contains(": error: ")),
+                    "{found:?}"
+                );
+                assert_eq!(model.nodes.len(), n_nodes, "{found:?}");
+                assert!(!model.shells.is_empty(), "{found:?}");
+            } else {
+                let onto: Vec<u64> = model
+                    .stamped_includes
+                    .iter()
+                    .map(|include| include.onto)
+                    .collect();
+                assert_eq!(onto, [read(&at("wide.k")).parts[0].id], "{keyword} {form}");
+            }
+        }
+    }
+}
+
+#[test]
+fn ids_that_both_files_have_are_offset_on_the_cards() {
+    let folder = pair();
+    let at = |name: &str| folder.path().join(name);
+    fs::copy(at("mesh.k"), at("same.k")).unwrap();
+    let line = [
+        "match",
+        "mesh.k",
+        "same.k",
+        "--cards",
+        "cards.k",
+        "--card-form",
+        "transform",
+    ];
+    let output = shapematch(folder.path(), &line);
+    let told = String::from_utf8_lossy(&output.stdout);
+    assert!(told.contains("with the ids of some in same.k"), "{told}");
+    fs::write(
+        at("both.k"),
+        "*KEYWORD\n*INCLUDE\nmesh.k\n*INCLUDE\ncards.k\n*END\n",
+    )
+    .unwrap();
+    let (one, both) = (read(&at("mesh.k")), read(&at("both.k")));
+    assert_eq!(both.nodes.len(), 2 * one.nodes.len());
+    assert_eq!(both.shells.len(), 2 * one.shells.len());
+    assert_eq!(both.parts.len(), 2 * one.parts.len());
+    let found: Vec<String> = both.diagnostics.iter().map(ToString::to_string).collect();
+    assert!(
+        !found.iter().any(|told| told.contains("defined again")),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn a_folder_is_named_and_goes_again_where_nothing_is_mapped() {
+    let folder = pair();
+    let dash = shapematch(
+        folder.path(),
+        &["map-car", "crash.k", "stamped.dynain", "-o", "-"],
+    );
+    assert_eq!(dash.status.code(), Some(2), "{}", said(&dash));
+    assert!(
+        said(&dash).contains("--out takes a folder"),
+        "{}",
+        said(&dash)
+    );
+    assert!(!folder.path().join("-").exists());
+    fs::write(folder.path().join("none.dynain"), "this is no deck\n").unwrap();
+    let line = ["map-car", "crash.k", "none.dynain", "-o", "mapped"];
+    assert_eq!(shapematch(folder.path(), &line).status.code(), Some(1));
+    assert!(!folder.path().join("mapped").exists());
+    fs::create_dir(folder.path().join("mapped")).unwrap();
+    assert_eq!(shapematch(folder.path(), &line).status.code(), Some(1));
+    assert!(folder.path().join("mapped").exists(), "it was there before");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_include_of_two_files_is_not_written_to_a_device() {
+    let folder = pair();
+    let line = ["map", "crash.k", "stamped.dynain", "--out", "/dev/null"];
+    let output = shapematch(folder.path(), &line);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(
+        said(&output).contains("has room for one"),
+        "{}",
+        said(&output)
+    );
+}
+
+/// The keys that docs/json.md lists below the heading of a schema.
+fn keys_of(page: &str, schema: &str) -> Vec<String> {
+    let heading = format!("## `{schema}`");
+    let (_, rest) = page
+        .split_once(&heading)
+        .unwrap_or_else(|| panic!("{heading} is missing"));
+    let section = rest.split("\n## ").next().unwrap_or_default();
+    let rows = section.lines().filter_map(|line| line.strip_prefix("| "));
+    let cells = rows.filter_map(|row| row.split('|').next());
+    let words = cells.flat_map(|cell| cell.split('`').skip(1).step_by(2));
+    words.map(str::to_owned).collect()
+}
+
+#[test]
+fn the_page_of_the_records_names_every_key() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/json.md");
+    let page = fs::read_to_string(page).unwrap().replace("\r\n", "\n");
+    let folder = pair();
+    let lines: &[&[&str]] = &[
+        &["info", "crash.k"],
+        &["match", "crash.k", "stamped.dynain"],
+        &["map", "crash.k", "stamped.dynain", "--out", "mapped.k"],
+        &["map-car", "crash.k", "stamped.dynain", "--out", "mapped"],
+        &["reduce", "mesh.k", "-n", "20", "--out", "small.stl"],
+    ];
+    for line in lines {
+        let output = shapematch(folder.path(), &[line, &["--json", "-"][..]].concat());
+        let record: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let record = record.as_object().unwrap();
+        let told = keys_of(&page, record["schema"].as_str().unwrap());
+        for key in record.keys() {
+            assert!(
+                told.contains(key),
+                "{line:?}: docs/json.md does not name {key}"
+            );
+        }
+        // Some are there only where there is something to tell.
+        for key in told
+            .iter()
+            .filter(|key| !["thinning", "probes"].contains(&key.as_str()))
+        {
+            assert!(
+                record.contains_key(key),
+                "{line:?}: docs/json.md names {key}, which is not there"
+            );
+        }
+    }
 }
