@@ -11,6 +11,7 @@ use shapematch::formats::{
     ReadOptions, Selection,
 };
 use shapematch::monitor::Monitor;
+use shapematch::report::ModelInfo;
 
 fn data_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/keyword")
@@ -947,4 +948,19 @@ fn an_include_that_is_no_file_is_named_for_what_it_is() {
         let found = first(&model, DiagnosticKind::MissingInclude);
         assert!(found.message.contains(told), "{}", found.message);
     }
+}
+
+#[test]
+fn plastic_strains_of_shells_that_are_elsewhere_are_not_counted() {
+    let state = |id: u64, strain: f64| format!("{id},1,1\n0.,1.,1.,1.,1.,1.,1.,{strain}\n");
+    let states = format!(
+        "*INITIAL_STRESS_SHELL\n{}{}",
+        state(1, 0.25),
+        state(99, 7.0)
+    );
+    let mesh = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n*ELEMENT_SHELL\n1,1,1,2,3\n";
+    let range = |deck: String| ModelInfo::of(&read_text(deck)).forming.plastic_strain_range;
+    assert_eq!(range(mesh.to_owned() + &states), Some([0.25, 0.25]));
+    // A file of states alone has them for shells of another.
+    assert_eq!(range(states), Some([0.25, 7.0]));
 }

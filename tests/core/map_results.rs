@@ -220,6 +220,12 @@ fn strains_in_element_axes_are_told_where_strains_are_mapped() {
     );
     let told = warned(&results, "thickness");
     assert!(!told.contains("axes"), "{told}");
+    // Where nothing else is asked for, they are the reason why there is nothing.
+    let pair = Pair::new(&crash(1, ""), &stamped(1, &results));
+    let output = pair.map(&["--quantities", "strain"]);
+    assert_eq!(output.status.code(), Some(1));
+    let reason = "stamped.dynain; stamped.dynain: 1 strain in axes of its element is left out";
+    assert!(errors(&output).contains(reason), "{}", errors(&output));
 }
 
 #[test]
