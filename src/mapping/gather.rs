@@ -277,10 +277,10 @@ impl Context<'_> {
             Overlap::First => false,
             Overlap::Nearest => candidate.point.distance_sq < best.point.distance_sq,
             Overlap::Thicker => {
+                // An unknown one is less than any other.
                 let thickness = |of: &Centre| {
                     let source = &self.sources[of.source as usize];
-                    let corners = source.corner_thickness(of.point.element as usize);
-                    corners.map_or(0.0, |corners| corners.iter().sum::<f64>())
+                    source.mean_thickness(of.point.element as usize).max(0.0)
                 };
                 thickness(candidate) > thickness(best)
             }

@@ -317,6 +317,11 @@ impl<'a> PreparedSource<'a> {
         self.part.thickness.get(element)
     }
 
+    /// Mean thickness of an element; NaN if it is not known.
+    pub fn mean_thickness(&self, element: usize) -> f64 {
+        self.thickness.get(element).copied().unwrap_or(f64::NAN)
+    }
+
     /// Distance to the sheet whatever its normal, if within `max_distance`.
     pub fn distance(&self, query: &Point3, max_distance: f64) -> Option<f64> {
         let hit = self.bvh.closest(query, max_distance, None, None)?;
