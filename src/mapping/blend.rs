@@ -97,7 +97,7 @@ impl<'a> Blend<'a> {
                 range.1.max(source.thickness_range.1),
             );
         }
-        if known <= LEAST_COVERAGE * all {
+        if known <= 0.0 || known < LEAST_COVERAGE * all {
             return f64::NAN;
         }
         (sum / known).clamp(range.0, range.1) * self.context.options.thickness_scale
@@ -195,7 +195,7 @@ impl<'a> Blend<'a> {
             })
         };
         let known: f64 = present().map(|(share, _)| share.group.area).sum();
-        if known <= LEAST_COVERAGE * all {
+        if known <= 0.0 || known < LEAST_COVERAGE * all {
             return;
         }
         let first = out.len();

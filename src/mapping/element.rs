@@ -2,7 +2,7 @@
 
 use super::blend::Blend;
 use super::field::Fields;
-use super::gather::{Centre, Group, Search, Trail, gauge_of};
+use super::gather::{Centre, Group, Search, Trail, gauge_of, largest};
 use super::layered::PLASTIC_STRAIN;
 use super::options::{MapMethod, MapOptions, Status};
 use super::points::PointRules;
@@ -255,7 +255,8 @@ impl Context<'_> {
         }
         partners.ends.push(partners.groups.len());
         partners.is_copy.push(copied.is_some());
-        let apart = centre.map(|centre| centre.point.point - centre_point);
+        let sheet = self.place_of_sheet(centre.as_ref(), &partners.groups[first..]);
+        let apart = sheet.map(|(place, _)| place - centre_point);
         let normal_distance = apart.map_or(f64::NAN, |apart| apart.dot(&normal));
         out.limits.push(Limits {
             max_distance: reach,
@@ -266,9 +267,8 @@ impl Context<'_> {
             normal_distance,
             tangential_distance: apart
                 .map_or(f64::NAN, |apart| (apart - normal * normal_distance).norm()),
-            angle_deg: centre.map_or(f64::NAN, |centre| {
-                let cos = self.side_normal(&centre.point, centre.source).dot(&normal);
-                cos.clamp(-1.0, 1.0).acos().to_degrees()
+            angle_deg: sheet.map_or(f64::NAN, |(_, side)| {
+                side.dot(&normal).clamp(-1.0, 1.0).acos().to_degrees()
             }),
             coverage,
             confidence: 0.0,
@@ -400,7 +400,7 @@ impl Context<'_> {
                 is_copy,
             });
         }
-        let largest = groups.iter().max_by(|a, b| a.area.total_cmp(&b.area))?;
+        let largest = largest(groups)?;
         Some(Partner {
             source: largest.source,
             element: largest.element,

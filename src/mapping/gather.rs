@@ -323,10 +323,24 @@ impl Context<'_> {
         of_point.join(groups);
     }
 
-    /// Unit normal of a source element on the side that corresponds to the target's normal.
-    pub(super) fn side_normal(&self, point: &SourcePoint, source: u32) -> Vector3 {
-        let normal = self.sources[source as usize].mesh.normals()[point.element as usize];
-        if point.is_flipped { -normal } else { normal }
+    /// Where the sheet lies over the element, and its unit normal on the side of the target's: at the partner of the
+    /// centre, or at the mean place of the largest group where the centre has none.
+    pub(super) fn place_of_sheet(
+        &self,
+        centre: Option<&Centre>,
+        groups: &[Group],
+    ) -> Option<(Point3, Vector3)> {
+        let mesh = |source: u32| &self.sources[source as usize].mesh;
+        let (place, normal, is_flipped) = if let Some(Centre { source, point }) = centre {
+            let normal = mesh(*source).normals()[point.element as usize];
+            (point.point, normal, point.is_flipped)
+        } else {
+            let group = largest(groups)?;
+            let (mesh, own) = (mesh(group.source), group.element as usize);
+            let place = mesh.centroids()[own] + group.offset / group.area;
+            (place, mesh.normals()[own], group.is_flipped)
+        };
+        Some((place, if is_flipped { -normal } else { normal }))
     }
 }
 
@@ -368,6 +382,11 @@ impl Found {
         let worst = reasons.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
         worst.map_or(Status::Outside, |(_, status)| status)
     }
+}
+
+/// The group that counts for most of the area; of equal ones the last.
+pub(super) fn largest(groups: &[Group]) -> Option<&Group> {
+    groups.iter().max_by(|a, b| a.area.total_cmp(&b.area))
 }
 
 pub(super) fn gauge_of(sources: &[PreparedSource<'_>], group: &Group) -> (u32, u32) {

@@ -382,7 +382,8 @@ fn assemble(
 
 fn median_offset(elements: &[ElementReport]) -> f64 {
     let with_partner = elements.iter().filter(|report| report.partner.is_some());
-    let mut distances: Vec<f64> = with_partner.map(|report| report.normal_distance).collect();
+    let distances = with_partner.map(|report| report.normal_distance);
+    let mut distances: Vec<f64> = distances.filter(|distance| distance.is_finite()).collect();
     if distances.is_empty() {
         return 0.0;
     }

@@ -113,11 +113,12 @@ pub struct Partner {
 pub struct ElementReport {
     /// What became of it.
     pub status: Status,
-    /// Signed distance of the partner from the element's centre along the element's normal.
+    /// Signed distance of the sheet from the element's centre along the element's normal: of the centre's partner, or
+    /// where the centre has none, of the largest group of partners that the other points have.
     pub normal_distance: f64,
-    /// Distance of the partner across the normal.
+    /// Distance of the same place across the normal.
     pub tangential_distance: f64,
-    /// Angle between both normals, degrees; NaN without partner.
+    /// Angle between the normals there, degrees; NaN without partner.
     pub angle_deg: f64,
     /// Share of the element's area that has partners, 0 to 1.
     pub coverage: f64,

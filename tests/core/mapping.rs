@@ -870,6 +870,79 @@ fn elements_without_counterpart_say_why() {
     assert_eq!(mapped.counts()[Status::Mapped as usize], 0);
 }
 
+/// Where the sheet over the middle of an element lies beyond the largest distance, the element is measured by the
+/// partners of its other points.
+#[test]
+fn elements_are_measured_where_their_middle_has_no_partner() {
+    let ridge: Shape = |u, v| {
+        let is_high = (u - 50.0).abs() < 4.0;
+        Point3::new(u, v, if is_high { 3.0 } else { 0.1 })
+    };
+    let fine = Blank {
+        jitter: 0.0,
+        ..Blank::new(2.5)
+    };
+    let coarse = Blank {
+        jitter: 0.0,
+        ..Blank::new(20.0)
+    };
+    let part = source(fine.mesh(ridge), 2, uniform);
+    let onto = target(coarse.mesh(flat), 2);
+    let options = MapOptions {
+        max_distance: Some(1.0),
+        ..full()
+    };
+    let mapped = map_one(&part, Similarity::identity(), &onto, &options);
+    let mut n_under_ridge = 0;
+    for (report, centre) in mapped.elements.iter().zip(onto.mesh.centroids()) {
+        assert!(report.partner.is_some(), "{report:?}");
+        assert!((report.normal_distance - 0.1).abs() < 1e-9, "{report:?}");
+        assert!(report.angle_deg < 1e-3 && report.tangential_distance.is_finite());
+        assert!(
+            (report.confidence - report.coverage).abs() < 1e-9,
+            "{report:?}"
+        );
+        if (centre.x - 50.0).abs() < 1.0 {
+            assert_eq!(report.status, Status::Partly);
+            n_under_ridge += 1;
+        }
+    }
+    assert_eq!(n_under_ridge, 3);
+    assert!((mapped.median_offset - 0.1).abs() < 1e-9);
+    assert_eq!(mapped.n_distant, 0);
+}
+
+#[test]
+fn an_element_of_which_half_has_results_takes_them() {
+    let at = |x: f64, y: f64| Point3::new(x, y, 0.0);
+    let rows = [0.0, 40.0].map(|y| [at(0.0, y), at(40.0, y), at(80.0, y)]);
+    let corners = vec![[0, 1, 4, 3], [1, 2, 5, 4]];
+    let mesh = ShellMesh::new(rows.concat(), corners, vec![0; 2]).unwrap();
+    let mut part = source(mesh, 2, uniform);
+    part.thickness[1] = [f64::NAN; 4];
+    let whole = part.clone();
+    part.states = Layered::new(2);
+    part.strains = Layered::new(2);
+    let (rule, values) = whole.states.of(0).unwrap();
+    part.states
+        .set(0, rule.places().iter().copied().zip(values.iter().copied()));
+    let (rule, values) = whole.strains.of(0).unwrap();
+    part.strains
+        .set(0, rule.places().iter().copied().zip(values.iter().copied()));
+    let square = vec![
+        at(36.0, 16.0),
+        at(44.0, 16.0),
+        at(44.0, 24.0),
+        at(36.0, 24.0),
+    ];
+    let square = ShellMesh::new(square, vec![[0, 1, 2, 3]], vec![0]).unwrap();
+    let mapped = map_one(&part, Similarity::identity(), &target(square, 2), &full());
+    assert_eq!(mapped.elements[0].status, Status::Mapped);
+    assert!((mapped.thickness[0] - 1.0).abs() < 1e-12);
+    assert_eq!(mapped.states.unwrap().of(0).len(), 2);
+    assert_eq!(mapped.strains.unwrap().of(0).len(), 2);
+}
+
 /// A flat crash part that is as wide as the stamped blank and so long.
 fn longer_blank(length: f64) -> TargetPart {
     let blank = Blank {
