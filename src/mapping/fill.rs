@@ -8,18 +8,22 @@ use crate::monitor::{Cancelled, Monitor};
 
 /// Fills as many rings as the options ask for. A filled element gets the area-weighted means of its
 /// mapped neighbours of the same part and the same number of layers, and the status [`Status::Filled`]. Where
-/// plastic strains are asked for, these come with zero stress; there is no strain and no history.
+/// plastic strains are asked for, these come with zero stress; there is no strain and no history. Elements
+/// beside which neither thickness nor plastic strain is known stay as they are.
 pub(super) fn fill(
     mapped: &mut Mapped,
     target: &TargetPart,
     options: &MapOptions,
     monitor: &Monitor,
 ) -> Result<(), Cancelled> {
-    if options.fill_rings == 0 {
+    let fills_thickness = !mapped.thickness.is_empty();
+    let fills_states = options.quantities.plastic_strain && mapped.states.is_some();
+    if options.fill_rings == 0 || !(fills_thickness || fills_states) {
         return Ok(());
     }
     let neighbours = target.mesh.links(monitor)?.neighbours;
-    let own = mapped.states.as_ref().map(|states| {
+    let own = mapped.states.as_ref().filter(|_| fills_states);
+    let own = own.map(|states| {
         map_chunks(target.mesh.len(), monitor, |element| {
             states.of(element).to_vec()
         })
@@ -31,6 +35,11 @@ pub(super) fn fill(
             .iter()
             .map(|report| report.status.has_values())
             .collect();
+        let gives = |n: usize| {
+            let has_thickness = fills_thickness && mapped.thickness[n].is_finite();
+            let has_state = states.as_ref().is_some_and(|states| !states[n].is_empty());
+            has_values[n] && target.mesh.areas()[n] > 0.0 && (has_thickness || has_state)
+        };
         let mut filled = Vec::new();
         for_chunks(target.mesh.len(), monitor, |range| {
             for element in range.filter(|&element| !has_values[element]) {
@@ -39,7 +48,7 @@ pub(super) fn fill(
                     .iter()
                     .map(|&n| n as usize)
                     .filter(|&n| {
-                        has_values[n]
+                        gives(n)
                             && target.mesh.parts()[n] == target.mesh.parts()[element]
                             && target.rule_of[n] == target.rule_of[element]
                             && target.planes(n) == target.planes(element)
@@ -58,7 +67,7 @@ pub(super) fn fill(
                 monitor.check()?;
             }
             let area = |n: &usize| target.mesh.areas()[*n];
-            if !mapped.thickness.is_empty() {
+            if fills_thickness {
                 let known: Vec<usize> = around
                     .iter()
                     .copied()
@@ -67,9 +76,7 @@ pub(super) fn fill(
                 let sum: f64 = known.iter().map(|n| area(n) * mapped.thickness[*n]).sum();
                 mapped.thickness[element] = sum / known.iter().map(area).sum::<f64>();
             }
-            if options.quantities.plastic_strain
-                && let Some(states) = &mut states
-            {
+            if let Some(states) = &mut states {
                 states[element] = mean_plastic_strain(states, &around, target);
             }
             mapped.elements[element].status = Status::Filled;

@@ -975,6 +975,67 @@ fn unmapped_rings_are_filled_and_marked() {
     }
 }
 
+/// A stamped part without thickness beyond x = 50, and one without states there.
+fn without_a_half(whole: &SourcePart) -> [SourcePart; 2] {
+    let [mut no_thickness, mut no_states] = [whole.clone(), whole.clone()];
+    no_states.states = Layered::new(whole.mesh.len());
+    for (element, centre) in whole.mesh.centroids().iter().enumerate() {
+        if centre.x > 50.0 {
+            no_thickness.thickness[element] = [f64::NAN; 4];
+        } else {
+            let (rule, values) = whole.states.of(element).unwrap();
+            let points = rule.places().iter().copied().zip(values.iter().copied());
+            no_states.states.set(element, points);
+        }
+    }
+    [no_thickness, no_states]
+}
+
+/// These quantities, of "thickness", "plastic", "strain" and "stress".
+fn quantities(names: &str) -> Quantities {
+    Quantities {
+        thickness: names.contains("thickness"),
+        plastic_strain: names.contains("plastic"),
+        strain: names.contains("strain"),
+        stress: names.contains("stress"),
+        history: false,
+    }
+}
+
+#[test]
+fn filled_elements_have_a_value() {
+    let whole = source(Blank::new(5.0).mesh(flat), 2, uniform);
+    let [no_thickness, no_states] = without_a_half(&whole);
+    let onto = longer_blank(120.0);
+    for (part, names, n_filled) in [
+        (&whole, "thickness", 24),
+        (&whole, "plastic", 24),
+        (&whole, "strain", 0),
+        (&whole, "stress", 0),
+        (&whole, "strain, stress", 0),
+        (&no_thickness, "thickness, strain", 0),
+        (&no_thickness, "thickness, plastic", 24),
+        (&no_states, "plastic, strain", 0),
+        (&no_states, "thickness, plastic", 24),
+    ] {
+        let options = MapOptions {
+            quantities: quantities(names),
+            fill_rings: 2,
+            ..MapOptions::default()
+        };
+        let mapped = map_one(part, Similarity::identity(), &onto, &options);
+        let is_filled = |element: &usize| mapped.elements[*element].status == Status::Filled;
+        let mut filled = (0..onto.mesh.len()).filter(is_filled);
+        assert_eq!(filled.clone().count(), n_filled, "{names}");
+        assert!(filled.all(|element| {
+            let thickness = mapped.thickness.get(element);
+            let states = mapped.states.as_ref();
+            thickness.is_some_and(|t| t.is_finite())
+                || states.is_some_and(|states| !states.of(element).is_empty())
+        }));
+    }
+}
+
 #[test]
 fn filling_ends_where_there_is_nothing_to_fill() {
     let part = source(Blank::new(5.0).mesh(flat), 2, uniform);
