@@ -1,7 +1,9 @@
 //! Values of elements through their layers, as the source has them and at the layers of a target.
 
+use std::collections::BTreeMap;
+
 use super::layers::LayerMatrix;
-use super::rule::{LayerRule, SAME_PLACE};
+use super::rule::{LayerRule, SAME_PLACE, SAME_RULE};
 
 /// Where the effective plastic strain stands in the state of a point, behind the six stresses.
 pub const PLASTIC_STRAIN: usize = 6;
@@ -13,8 +15,11 @@ pub struct Layered<const N: usize> {
     /// For each element its first value and its rule; `NO_RULE` where it has none.
     records: Vec<(u32, u16)>,
     rules: Vec<LayerRule>,
+    /// The rules by their number of layers and, in cells, their first place.
+    by_place: BTreeMap<(usize, i64), Vec<u16>>,
     values: Vec<[f64; N]>,
     in_plane: InPlane<N>,
+    n_left_out: usize,
 }
 
 /// The points of elements that have four in each layer, whose means are the values there.
@@ -49,6 +54,12 @@ impl<const N: usize> InPlane<N> {
 }
 
 const NO_RULE: u16 = u16::MAX;
+
+/// Where a rule is looked up: one with the same places lies there or beside it.
+fn cell(places: &[f64]) -> (usize, i64) {
+    let first = places.first().copied().unwrap_or_default();
+    (places.len(), (first / (2.0 * SAME_RULE)).round() as i64)
+}
 
 /// Integration points (T, values) of an element in any order as layers that rise in T: points of one layer are
 /// averaged.
@@ -87,25 +98,47 @@ impl<const N: usize> Layered<N> {
         Self {
             records: vec![(0, NO_RULE); n_elements],
             rules: Vec::new(),
+            by_place: BTreeMap::new(),
             values: Vec::new(),
             in_plane: InPlane {
                 starts: Vec::new(),
                 points: Vec::new(),
             },
+            n_left_out: 0,
         }
     }
 
     /// No values for `n_elements` elements; those with layers at the places of one of the rules have it.
     pub fn with_rules(n_elements: usize, rules: Vec<LayerRule>) -> Self {
-        Self {
-            rules,
-            ..Self::new(n_elements)
+        let mut layered = Self::new(n_elements);
+        for rule in rules {
+            layered.add_rule(rule);
         }
+        layered
+    }
+
+    /// The number of the new rule; `None` beyond as many as can be numbered.
+    fn add_rule(&mut self, rule: LayerRule) -> Option<u16> {
+        let number = u16::try_from(self.rules.len()).ok();
+        let number = number.filter(|&number| number != NO_RULE)?;
+        let of_cell = self.by_place.entry(cell(rule.places())).or_default();
+        of_cell.push(number);
+        self.rules.push(rule);
+        Some(number)
+    }
+
+    /// The first rule with layers at these places.
+    fn known_rule(&self, places: &[f64]) -> Option<u16> {
+        let (n, at) = cell(places);
+        let beside = (n, at.saturating_sub(1))..=(n, at.saturating_add(1));
+        let near = self.by_place.range(beside).flat_map(|(_, rules)| rules);
+        let same = near.filter(|&&rule| self.rules[rule as usize].has_places(places));
+        same.min().copied()
     }
 
     /// Sets the values of an element from its integration points (T, values) in any order: points of
-    /// one layer are averaged, layers sorted by T. Nothing is set without points, with a value that is
-    /// not finite, or beyond 65,534 different rules.
+    /// one layer are averaged, layers sorted by T. Nothing is set without points or with a value that is
+    /// not finite. Beyond 65,535 different rules an element is left out and counted.
     pub fn set(&mut self, element: usize, points: impl Iterator<Item = (f64, [f64; N])>) {
         let mut points: Vec<(f64, [f64; N])> = points.collect();
         let finite = |(t, values): &(f64, [f64; N])| {
@@ -122,18 +155,22 @@ impl<const N: usize> Layered<N> {
         // Eight points in one place are no two layers of four.
         let in_plane = in_plane.filter(|points| points.len() == 4 * layers.len());
         let places: Vec<f64> = layers.iter().map(|(t, _)| *t).collect();
+        let known = self.known_rule(&places);
+        let Some(rule) = known.or_else(|| self.add_rule(LayerRule::from_places(places))) else {
+            self.n_left_out += 1;
+            return;
+        };
         let first = self.values.len();
         self.values
             .extend(layers.into_iter().map(|(_, values)| values));
-        let known = self.rules.iter().position(|rule| rule.has_places(&places));
-        let rule = known.unwrap_or_else(|| {
-            self.rules.push(LayerRule::from_places(places));
-            self.rules.len() - 1
-        });
-        if rule < NO_RULE as usize {
-            self.records[element] = (first as u32, rule as u16);
-            self.in_plane.set(element, in_plane);
-        }
+        self.records[element] = (first as u32, rule);
+        self.in_plane.set(element, in_plane);
+    }
+
+    /// How many times an element was left out because its layers lie elsewhere than those of as many others as can be
+    /// told apart.
+    pub fn n_left_out(&self) -> usize {
+        self.n_left_out
     }
 
     /// One number of an element, weighted over its layers; NaN if it has none.
@@ -276,5 +313,65 @@ impl Numbers<1> for PerElement<'_> {
 
     fn push(&self, element: usize, out: &mut Vec<[f64; 1]>) {
         out.push([self.0[element]]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn points(places: &[f64]) -> impl Iterator<Item = (f64, [f64; 1])> {
+        places.iter().map(|&t| (t, [t]))
+    }
+
+    #[test]
+    fn the_first_rule_with_the_same_places_is_found() {
+        let n = 3000;
+        let mut layered = Layered::with_rules(n, vec![LayerRule::of_plies(&[0.2, 0.3, 0.5])]);
+        let mut rules = layered.rules().to_vec();
+        let mut seed = 7_u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (seed >> 40) as f64 / (1_u64 << 24) as f64
+        };
+        for element in 0..n {
+            // Some a little apart from others, some with layers close together, some of two layers.
+            let first = -0.8 + 0.02 * random();
+            let second = first + 0.015 + 0.01 * random();
+            let all = [first, second, 0.5 + 0.003 * random()];
+            let places = &all[..2 + element % 2];
+            let known = rules.iter().position(|rule| rule.has_places(places));
+            let expected = known.unwrap_or_else(|| {
+                rules.push(LayerRule::from_places(places.to_vec()));
+                rules.len() - 1
+            });
+            layered.set(element, points(places));
+            assert_eq!(layered.records[element].1 as usize, expected);
+        }
+        assert!(rules.len() > 100, "{} rules", rules.len());
+        assert_eq!(layered.rules(), rules);
+        assert_eq!(layered.n_left_out(), 0);
+    }
+
+    #[test]
+    fn elements_beyond_the_last_rule_are_left_out_and_counted() {
+        let most = NO_RULE as usize;
+        let n = most + 500;
+        let mut layered = Layered::new(n);
+        for element in 0..n - 1 {
+            let first = -0.01 * element as f64;
+            layered.set(element, points(&[first, first + 0.5]));
+        }
+        layered.set(n - 1, points(&[0.0, 0.5]));
+        assert_eq!(layered.rules().len(), most);
+        assert_eq!(layered.n_left_out(), 499);
+        assert_eq!(layered.n_present(), most + 1);
+        assert_eq!(
+            layered.values.len(),
+            2 * (most + 1),
+            "nothing is left of the others"
+        );
+        assert!(layered.of(most - 1).is_some() && layered.of(most).is_none());
+        assert_eq!(layered.of(n - 1), layered.of(0));
     }
 }

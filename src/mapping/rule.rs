@@ -10,7 +10,7 @@ pub const SAME_PLACE: f64 = 1e-4;
 
 /// Layers this close to those of a rule are that rule, if its layers lie farther apart than ten times as
 /// much: some writers give T three digits. Rules of as many layers differ by thirteen times as much or more.
-const SAME_RULE: f64 = 2e-3;
+pub(super) const SAME_RULE: f64 = 2e-3;
 
 /// Half tables, outermost place last; odd rules have 0 first.
 const GAUSS: [&[(f64, f64)]; 10] = [

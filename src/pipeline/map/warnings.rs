@@ -53,6 +53,8 @@ pub(super) fn warnings(
     warnings.extend(bare_elements(run, stamped));
     let sources = stamped.iter().zip(&run.source_shells);
     warnings.extend(sources.filter_map(|(placed, shells)| without_results(placed, shells)));
+    let sources = stamped.iter().zip(&run.sources);
+    warnings.extend(sources.flat_map(|(placed, source)| left_out(placed, source)));
     warnings.extend(of_elements(run));
     warnings.extend(other_unit(run, stamped));
     warnings.extend(stress_units(run, crash, stamped));
@@ -95,6 +97,24 @@ pub(super) fn warnings(
         warnings.extend(old_states_warning(run, files));
     }
     warnings
+}
+
+/// Says how many elements of a stamped file have no results because places of layers differ in too many ways.
+fn left_out(placed: &PlacedPart<'_>, source: &SourcePart) -> Vec<String> {
+    let of = |what: &str, n: usize| {
+        (n > 0).then(|| {
+            format!(
+                "{}: {what} of {} are left out: places of layers through the thickness differ in more than 65,535 ways",
+                placed.part.file_name(),
+                counted(n, "element")
+            )
+        })
+    };
+    let lines = [
+        of("stresses and plastic strains", source.states.n_left_out()),
+        of("strains", source.strains.n_left_out()),
+    ];
+    lines.into_iter().flatten().collect()
 }
 
 /// Asks about the unit of a stamped file whose given pose puts it beside the crash part, from the sizes of both.
