@@ -15,6 +15,9 @@ use crate::monitor::{Cancelled, Monitor};
 
 /// Elements that one thread takes at a time.
 const CHUNK: usize = 4096;
+/// At a node of more elements, as in the middle of a fan, only those beside each other are neighbours: lists of all of
+/// them would take memory by the square of their number.
+const MOST_AT_NODE: usize = 1024;
 
 /// Neighbours and border of a sheet.
 #[derive(Debug, Clone)]
@@ -110,7 +113,8 @@ impl Links {
             links.border_edges.extend_from_slice(&chunk.border_edges);
         }
         if any_opposed {
-            links.neighbours.find_reversed(corners_of, monitor)?;
+            links.neighbours.is_reversed =
+                reversed_in_sheet(mesh, corners_of, &links.neighbours, monitor)?;
         }
         Ok(links)
     }
@@ -215,19 +219,25 @@ fn merged_corners(
 }
 
 /// For each element whether its corners go the other way round than those of most of its sheet, by area; empty where
-/// all go alike. A sheet goes on over edges that two elements of one part share and no third: beyond others no side
-/// is the same. O(elements).
-pub(super) fn reversed_in_sheet(
+/// all go alike. O(elements).
+pub(super) fn reversed_elements(
     mesh: &ShellMesh,
     monitor: &Monitor,
 ) -> Result<Vec<bool>, Cancelled> {
     let merged = mesh.merged_nodes(monitor)?;
     let corners_of = merged_corners(mesh, &merged, monitor)?;
     let links = Links::before_cracks(mesh, n_merged(&merged), &corners_of, monitor)?;
-    let neighbours = links.neighbours;
-    if !neighbours.any_opposed() {
-        return Ok(Vec::new());
-    }
+    Ok(links.neighbours.is_reversed)
+}
+
+/// The same from the neighbours of all elements. A sheet goes on over edges that two elements of one part share and no
+/// third: beyond others no side is the same.
+fn reversed_in_sheet(
+    mesh: &ShellMesh,
+    corners_of: &[[u32; 4]],
+    neighbours: &Neighbours,
+    monitor: &Monitor,
+) -> Result<Vec<bool>, Cancelled> {
     let across = |element: usize, ends: [u32; 2]| {
         let others = neighbours.of(element).iter().map(|&other| other as usize);
         let mut others = others.filter_map(|other| {
@@ -309,12 +319,10 @@ impl Chunk {
             found.clear();
             for &node in corners {
                 let around = around_node.of(node as usize);
-                found.extend(around.iter().filter(|&&other| other != element));
+                if around.len() <= MOST_AT_NODE {
+                    found.extend(around.iter().filter(|&&other| other != element));
+                }
             }
-            found.sort_unstable();
-            found.dedup();
-            links.items.extend_from_slice(&found);
-            links.ends.push(links.items.len() as u32);
             let mut bits = 0;
             for [i, j] in edges(corners) {
                 let ends = [corners[i], corners[j]];
@@ -322,17 +330,24 @@ impl Chunk {
                 if ends[0] == ends[1] {
                     continue;
                 }
-                let mut others = around_node.of(ends[0] as usize).iter();
-                let across = others.find_map(|&other| {
-                    let is_other = other != element && has_area(other);
-                    is_other
-                        .then(|| goes_along(&corners_of[other as usize], ends))
-                        .flatten()
+                let [a, b] = ends.map(|end| around_node.of(end as usize));
+                let around = if b.len() < a.len() { b } else { a };
+                let others = around.iter().filter(|&&other| other != element);
+                let mut others = others.filter_map(|&other| {
+                    Some((other, goes_along(&corners_of[other as usize], ends)?))
                 });
+                if around.len() > MOST_AT_NODE {
+                    found.extend(others.clone().map(|(other, _)| other));
+                }
+                let across = others.find(|(other, _)| has_area(*other));
                 bits |= u8::from(across.is_none()) << i;
-                links.any_opposed |= across == Some(true);
+                links.any_opposed |= across.is_some_and(|(_, same_way)| same_way);
             }
             links.border_edges.push(bits);
+            found.sort_unstable();
+            found.dedup();
+            links.items.extend_from_slice(&found);
+            links.ends.push(links.items.len() as u32);
         }
         links
     }
@@ -351,18 +366,19 @@ fn goes_along(corners: &[u32; 4], ends: [u32; 2]) -> Option<bool> {
 #[derive(Debug, Clone)]
 pub struct Neighbours {
     lists: Lists,
-    /// Of each element, whether its corners go the other way round than those of the first element of its sheet;
-    /// empty where all go alike.
+    /// Of each element, whether its corners go the other way round than those of most of its sheet; empty where all go
+    /// alike.
     is_reversed: Vec<bool>,
 }
 
 impl Neighbours {
-    /// Elements that share a node with `element`, in rising order.
+    /// Elements that share a node with `element`, in rising order; of a node with more than 1024 elements those that
+    /// share an edge.
     pub fn of(&self, element: usize) -> &[u32] {
         self.lists.of(element)
     }
 
-    /// True if two elements that share an edge have their normals on opposite sides.
+    /// True if any two elements that share an edge have their normals on opposite sides.
     pub(super) fn any_opposed(&self) -> bool {
         !self.is_reversed.is_empty()
     }
@@ -376,45 +392,6 @@ impl Neighbours {
     /// The cosine between the normals of two elements of one sheet as one side of it has them.
     pub fn seen_cos(&self, a: usize, b: usize, cos: f64) -> f64 {
         if self.are_opposed(a, b) { -cos } else { cos }
-    }
-
-    /// Goes through each sheet from edge to edge. O(elements).
-    fn find_reversed(
-        &mut self,
-        corners_of: &[[u32; 4]],
-        monitor: &Monitor,
-    ) -> Result<(), Cancelled> {
-        let mut is_reversed: Vec<Option<bool>> = vec![None; corners_of.len()];
-        let mut waiting = Vec::new();
-        for first in 0..corners_of.len() {
-            if is_reversed[first].is_some() {
-                continue;
-            }
-            is_reversed[first] = Some(false);
-            waiting.push((first, false));
-            let mut n_found = 0_usize;
-            while let Some((element, of_element)) = waiting.pop() {
-                if n_found.is_multiple_of(CHUNK) {
-                    monitor.check()?;
-                }
-                n_found += 1;
-                let corners = &corners_of[element];
-                for &other in self.lists.of(element) {
-                    let other = other as usize;
-                    if is_reversed[other].is_some() {
-                        continue;
-                    }
-                    let mut ends = edges(corners).map(|[i, j]| [corners[i], corners[j]]);
-                    let same_way = ends.find_map(|ends| goes_along(&corners_of[other], ends));
-                    if let Some(same_way) = same_way {
-                        is_reversed[other] = Some(of_element != same_way);
-                        waiting.push((other, of_element != same_way));
-                    }
-                }
-            }
-        }
-        self.is_reversed = is_reversed.into_iter().map(|r| r == Some(true)).collect();
-        Ok(())
     }
 }
 
@@ -458,5 +435,98 @@ impl Lists {
     fn of(&self, list: usize) -> &[u32] {
         let range = self.start.get(list..list.saturating_add(2));
         range.map_or(&[], |ends| &self.items[ends[0] as usize..ends[1] as usize])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point3;
+
+    fn square(corners: [[f64; 3]; 4]) -> [Point3; 4] {
+        corners.map(Point3::from)
+    }
+
+    #[test]
+    fn a_fan_takes_no_memory_by_the_square_of_its_elements() {
+        let n = 20_000_u32;
+        let mut positions = vec![Point3::origin()];
+        positions.extend((0..n).map(|i| {
+            let angle = std::f64::consts::TAU * f64::from(i) / f64::from(n);
+            Point3::new(1000.0 * angle.cos(), 1000.0 * angle.sin(), 0.0)
+        }));
+        let rim = |i: u32| 1 + i % n;
+        let corners = (0..n).map(|i| [0, rim(i), rim(i + 1), rim(i + 1)]);
+        let mesh = ShellMesh::new(positions, corners.collect(), vec![0; n as usize]).unwrap();
+        let links = mesh.links(&Monitor::silent()).unwrap();
+        assert_eq!(links.neighbours.lists.items.len(), 2 * n as usize);
+        for element in 0..n {
+            let mut beside = [(element + n - 1) % n, (element + 1) % n];
+            beside.sort_unstable();
+            assert_eq!(links.neighbours.of(element as usize), beside);
+            assert_eq!(links.border_edges[element as usize], 0b010);
+        }
+        assert!(!links.is_border_node(0) && links.is_border_node(1));
+    }
+
+    #[test]
+    fn a_fan_of_usual_size_has_all_its_elements_beside_each_other() {
+        let n = MOST_AT_NODE as u32;
+        let mut positions = vec![Point3::origin()];
+        positions.extend((0..=n).map(|i| {
+            let angle = f64::from(i) / f64::from(n);
+            Point3::new(10.0 * angle.cos(), 10.0 * angle.sin(), 0.0)
+        }));
+        let corners = (0..n).map(|i| [0, i + 1, i + 2, i + 2]).collect();
+        let mesh = ShellMesh::new(positions, corners, vec![0; n as usize]).unwrap();
+        let neighbours = mesh.neighbours();
+        assert!((0..n as usize).all(|element| neighbours.of(element).len() == MOST_AT_NODE - 1));
+    }
+
+    /// Two squares side by side, a third one upright on their common edge, and one beside the first whose corners go
+    /// the other way round. Which side the upright one is on does not depend on the order of the elements.
+    #[test]
+    fn no_element_is_reversed_over_an_edge_of_three() {
+        let elements = [
+            square([
+                [-1.0, 0.0, 0.0],
+                [0.0, 0.0, 0.0],
+                [0.0, 1.0, 0.0],
+                [-1.0, 1.0, 0.0],
+            ]),
+            square([
+                [0.0, 0.0, 0.0],
+                [1.0, 0.0, 0.0],
+                [1.0, 1.0, 0.0],
+                [0.0, 1.0, 0.0],
+            ]),
+            square([
+                [0.0, 0.0, 0.0],
+                [0.0, 1.0, 0.0],
+                [0.0, 1.0, 1.0],
+                [0.0, 0.0, 1.0],
+            ]),
+            square([
+                [-1.5, 0.0, 0.0],
+                [-1.5, 1.0, 0.0],
+                [-1.0, 1.0, 0.0],
+                [-1.0, 0.0, 0.0],
+            ]),
+        ];
+        for order in [[0, 1, 2, 3], [1, 0, 2, 3], [2, 1, 0, 3], [3, 2, 1, 0]] {
+            let positions = order.map(|element| elements[element]).concat();
+            let corners = (0..4).map(|i| [4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3]);
+            let mesh = ShellMesh::new(positions, corners.collect(), vec![0; 4]).unwrap();
+            let neighbours = mesh.neighbours();
+            assert!(neighbours.any_opposed());
+            for (a, of_a) in order.into_iter().enumerate() {
+                for (b, of_b) in order.into_iter().enumerate() {
+                    let is_one_reversed = (of_a == 3) != (of_b == 3);
+                    assert_eq!(neighbours.are_opposed(a, b), is_one_reversed, "{order:?}");
+                }
+            }
+            let reversed = reversed_elements(&mesh, &Monitor::silent()).unwrap();
+            assert_eq!(reversed, order.map(|element| element == 3));
+        }
     }
 }

@@ -53,7 +53,6 @@ use rayon::prelude::*;
 use crate::geometry::{Similarity, z_order_for};
 use crate::monitor::{Cancelled, Monitor};
 use element::{Buffers, Context, Scratch};
-use links::reversed_in_sheet;
 use points::PointRules;
 use source::{PartnerFilter, PreparedSource, SourcePoint};
 
@@ -128,7 +127,7 @@ pub fn map(
         .zip(&source_sizes)
         .map(|(source, &size)| facing(source, target, options, size))
         .collect();
-    let is_reversed = reversed_elements(target, options, &facings, monitor)?;
+    let is_reversed = reversed_targets(target, options, &facings, monitor)?;
     let context = Context {
         sources: &prepared,
         target,
@@ -286,7 +285,7 @@ fn facing(
 
 /// The elements whose normal points to the other side than those around them, where that tells which sheet they
 /// belong to.
-fn reversed_elements(
+fn reversed_targets(
     target: &TargetPart,
     options: &MapOptions,
     facings: &[Facing],
@@ -296,7 +295,7 @@ fn reversed_elements(
     if options.normal_sense != NormalSense::Auto || !is_signed {
         return Ok(Vec::new());
     }
-    reversed_in_sheet(&target.mesh, monitor)
+    links::reversed_elements(&target.mesh, monitor)
 }
 
 fn map_chunks(

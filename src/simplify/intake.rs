@@ -102,14 +102,16 @@ fn distinct_triangles(mesh: &TriMesh, monitor: &Monitor) -> Result<Vec<u32>, Can
         sorted.sort_unstable();
         sorted
     })?;
-    // Triangles with the same smallest vertex, chained from the latest to the earliest.
-    let mut last_of = vec![u32::MAX; mesh.n_vertices()];
+    // Triangles whose vertices have the same hash, chained from the latest to the earliest: those with one vertex in
+    // common may be all of the mesh.
+    let n_chains = sorted.len().max(1);
+    let mut last_of = vec![u32::MAX; n_chains];
     let mut earlier = vec![u32::MAX; sorted.len()];
     let mut kept = Vec::with_capacity(sorted.len());
     for_chunks(sorted.len(), monitor, |range| {
         for t in range {
             let corners = &sorted[t];
-            let head = &mut last_of[corners[0] as usize];
+            let head = &mut last_of[chain_of(corners, n_chains)];
             let mut other = *head;
             while other != u32::MAX && sorted[other as usize] != *corners {
                 other = earlier[other as usize];
@@ -122,6 +124,15 @@ fn distinct_triangles(mesh: &TriMesh, monitor: &Monitor) -> Result<Vec<u32>, Can
         }
     })?;
     Ok(kept)
+}
+
+/// The chain of a triangle, given its vertices in rising order.
+fn chain_of(corners: &[u32; 3], n_chains: usize) -> usize {
+    // Fibonacci hashing: the upper half of the word is well mixed.
+    let mix = |hash: u64, v: &u32| {
+        (hash.rotate_left(32) ^ u64::from(*v)).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    };
+    (corners.iter().fold(0, mix) >> 32) as usize % n_chains
 }
 
 /// Gives every vertex its quadric and its kind.
@@ -160,4 +171,50 @@ pub(super) fn add_quadrics(
         vertex.kind = Kind::on(n);
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The longest chain of some triangles.
+    fn longest(triangles: impl Iterator<Item = [u32; 3]>) -> usize {
+        let mut triangles: Vec<[u32; 3]> = triangles.collect();
+        triangles
+            .iter_mut()
+            .for_each(|corners| corners.sort_unstable());
+        let mut n_in = vec![0; triangles.len()];
+        for corners in &triangles {
+            n_in[chain_of(corners, triangles.len())] += 1;
+        }
+        n_in.into_iter().max().unwrap()
+    }
+
+    #[test]
+    fn chains_stay_short_about_one_vertex_and_on_a_grid() {
+        let n = 100_000;
+        // About the first vertex, about the last one, and two triangles for each square of a grid.
+        let low = longest((0..n).map(|i| [0, i + 1, i + 2]));
+        let high = longest((0..n).map(|i| [i, i + 1, n + 1]));
+        let grid = longest((0..n).flat_map(|i| [[i, i + 1, i + 301], [i, i + 301, i + 300]]));
+        assert!(low.max(high).max(grid) <= 30, "{low} {high} {grid}");
+    }
+
+    #[test]
+    fn of_equal_triangles_the_first_is_kept() {
+        let position = |i: u32| Point3::new(f64::from(i), f64::from(i * i), 0.0);
+        let positions = (0..5).map(position).collect();
+        let triangles = vec![
+            [0, 1, 2],
+            [2, 1, 3],
+            [1, 2, 0],
+            [3, 3, 4],
+            [3, 2, 1],
+            [2, 3, 4],
+            [4, 2, 2],
+        ];
+        let mesh = TriMesh::new(positions, triangles).unwrap();
+        let kept = distinct_triangles(&mesh, &Monitor::silent()).unwrap();
+        assert_eq!(kept, [0, 1, 5]);
+    }
 }
