@@ -132,8 +132,12 @@ fn map_all(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     for line in record.rows.iter().filter_map(CarRow::tools_line) {
         log::warn!("{line}");
     }
-    if let Some(path) = &args.json {
-        write_json(path, &record)?;
+    let mut is_written = true;
+    if let Some(path) = &args.json
+        && let Err(error) = write_json(path, &record)
+    {
+        log::error!("{} is not written: {error:#}", path.display());
+        is_written = false;
     }
     if !takes_stdout(args.json.as_deref()) {
         print(&table(&record))?;
@@ -145,7 +149,7 @@ fn map_all(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
             left_behind(&args.out)
         );
     }
-    Ok(if record.rows.iter().all(is_mapped) {
+    Ok(if is_written && record.rows.iter().all(is_mapped) {
         ExitCode::SUCCESS
     } else {
         ExitCode::FAILURE

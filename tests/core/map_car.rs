@@ -465,6 +465,36 @@ fn a_part_that_is_not_in_the_car_is_mapped_onto_none_of_several_shapes() {
 }
 
 #[test]
+#[cfg(target_os = "linux")]
+fn the_table_is_printed_though_the_json_cannot_be_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |args: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_shapematch"));
+        let command = command.current_dir(folder.path()).args(args);
+        command.output().unwrap()
+    };
+    let made = run(&["sample", ".", "--part", "rail", "--variant", "plain"]);
+    assert!(made.status.success(), "{}", errors(&made));
+    let map = ["map-car", "crash.k", "stamped.dynain", "--out", "mapped"];
+    let whole = run(&map);
+    assert!(whole.status.success(), "{}", errors(&whole));
+    let done = run(&[&map[..], &["--json", "/dev/full"]].concat());
+    assert_eq!(done.status.code(), Some(1), "{}", errors(&done));
+    assert!(
+        errors(&done).contains("/dev/full is not written"),
+        "{}",
+        errors(&done)
+    );
+    let table = |output: &Output| String::from_utf8(output.stdout.clone()).unwrap();
+    assert!(
+        table(&whole).contains("stamped.dynain"),
+        "{}",
+        table(&whole)
+    );
+    assert_eq!(table(&done), table(&whole));
+}
+
+#[test]
 fn half_of_a_symmetric_sheet_is_told_with_its_mirror_image() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
