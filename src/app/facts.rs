@@ -2,7 +2,7 @@
 
 use super::LogStep;
 use super::NoticeLevel;
-use crate::assess::{Ambiguity, Coverage, Verdict};
+use crate::assess::{Ambiguity, Coverage, Reason, Verdict};
 use crate::formats::{Diagnostic, Severity};
 use crate::jobs::{MeasuredLevel, PartFacts};
 use crate::pipeline::load::LoadedPart;
@@ -91,15 +91,25 @@ pub(super) fn n_alternatives(run: &MatchRun) -> usize {
 /// "GOOD: overlap stamped 87.0 %, crash 99.1 %, RMS 0.380, P95 0.900 mm; the reason".
 pub(super) fn match_line(run: &MatchRun, lengths: Lengths) -> String {
     let assessment = &run.assessment;
+    let found = (&assessment.coverage, assessment.reasons.first());
+    line_of(assessment.verdict, found, lengths)
+}
+
+/// The same of a verdict with its figures and its first reason.
+pub(super) fn line_of(
+    verdict: Verdict,
+    (coverage, reason): (&Coverage, Option<&Reason>),
+    lengths: Lengths,
+) -> String {
     let mut line = format!(
         "{}: overlap stamped {}, crash {}, RMS {}, P95 {}",
-        assessment.verdict.label(),
-        percent(assessment.coverage.source_on_target.overlap),
-        percent(assessment.coverage.target_on_source.overlap),
-        lengths.number(assessment.coverage.rmse()),
-        lengths.of(assessment.coverage.p95()),
+        verdict.label(),
+        percent(coverage.source_on_target.overlap),
+        percent(coverage.target_on_source.overlap),
+        lengths.number(coverage.rmse()),
+        lengths.of(coverage.p95()),
     );
-    if let Some(reason) = assessment.reasons.first() {
+    if let Some(reason) = reason {
         line += &format!("; {}", reason.words(lengths));
     }
     line

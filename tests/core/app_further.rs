@@ -863,6 +863,42 @@ fn a_project_keeps_further_files() {
 }
 
 #[test]
+fn the_match_of_a_further_file_is_told_with_the_decimals_of_now() {
+    let halves = Halves::new();
+    let mut window = halves.with_both();
+    let path = halves.folder.path().join("work.shapematch");
+    save(&mut window, &path);
+    let told = |window: &Window| match &states(window)[1] {
+        StampedState::Matched(_, line) => line.clone(),
+        other => panic!("{other:?}"),
+    };
+    window.state.settings.decimals = Some(1);
+    let short = told(&window);
+    window.state.settings.decimals = Some(6);
+    let long = told(&window);
+    assert!(
+        short.starts_with("GOOD") && short.len() < long.len(),
+        "{short}; {long}"
+    );
+
+    let mut again = open(&path);
+    again.state.settings.decimals = Some(6);
+    assert_eq!(told(&again), long);
+
+    // Older projects have the line as text.
+    let text = std::fs::read_to_string(&path).unwrap();
+    let mut project: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let placing = &mut project["further_stamped"][0]["placing"];
+    let fields = placing.as_object_mut().unwrap();
+    assert!(fields.remove("coverage").is_some() && fields.remove("reason").is_some());
+    fields.insert("line".to_owned(), "GOOD: overlap".into());
+    std::fs::write(&path, project.to_string()).unwrap();
+    let old = open(&path);
+    assert_eq!(verdicts(&old), verdicts(&window));
+    assert_eq!(told(&old), "GOOD");
+}
+
+#[test]
 fn a_project_keeps_which_stamped_files_are_hidden() {
     let halves = Halves::new();
     let mut window = halves.with_both();

@@ -10,7 +10,7 @@ use crate::app::follow_up::FollowUp;
 use crate::app::parts::length_factor_of;
 use crate::app::work::Work;
 use crate::app::{Document, Effect, LogStep, NoticeLevel, Part, Reason, Shared, UnitHint, facts};
-use crate::assess::Verdict;
+use crate::assess::{self, Coverage, Verdict};
 use crate::geometry::Similarity;
 use crate::jobs::{FurtherInput, JobKey, JobKind, PlaceInput, Stamp};
 use crate::pipeline::load::{LoadSettings, LoadedPart, usual_selection};
@@ -18,7 +18,7 @@ use crate::pipeline::map::{PoseOrigin, placing_recipe, pose_warning};
 use crate::pipeline::match_parts::MatchRun;
 use crate::pipeline::names::{file_name, told_apart};
 use crate::role::{PerRole, Role};
-use crate::text::{counted, grouped};
+use crate::text::{Lengths, counted, grouped};
 use crate::units::Units;
 
 /// What can be done about a further stamped file that has no pose.
@@ -45,8 +45,10 @@ pub struct Placing {
     pub crash_from_stamped: Similarity,
     /// Whether the pose can be used.
     pub verdict: Verdict,
-    /// The match in a line.
-    pub line: String,
+    /// Distances and overlap; unknown of an older project.
+    pub coverage: Option<Coverage>,
+    /// The first reason for the verdict.
+    pub reason: Option<assess::Reason>,
     /// The number of the crash part that it was matched with.
     pub crash_revision: u64,
 }
@@ -283,13 +285,8 @@ impl MappingState {
             return;
         }
         work.follow(FollowUp::FurtherPlaced);
-        let placing = run.map(|run| {
-            (
-                facts::match_level(&run),
-                placing(&run, crash_revision, work),
-            )
-        });
-        let name = work.document.stamped_name(&part);
+        let placing = run.map(|run| (facts::match_level(&run), placing(&run, crash_revision)));
+        let (name, lengths) = (work.document.stamped_name(&part), work.lengths());
         let further = work.document.mapping.further.iter_mut();
         let mut further = further.filter(|further| further.revision == revision);
         let Some(further) = further.next() else {
@@ -305,7 +302,7 @@ impl MappingState {
         let Some((level, placing)) = placing else {
             return;
         };
-        let line = format!("{name}: {}", placing.line);
+        let line = format!("{name}: {}", placing.line(lengths));
         further.placing = Some(placing);
         // It was said of the pose before.
         if let Some(before) = pose_warning(Verdict::Poor, &path) {
@@ -564,12 +561,24 @@ fn wanted(document: &Document) -> Vec<Task> {
     further.filter_map(|further| further.task(both)).collect()
 }
 
-fn placing(run: &MatchRun, crash_revision: u64, work: &Work<'_>) -> Placing {
+fn placing(run: &MatchRun, crash_revision: u64) -> Placing {
     Placing {
         crash_from_stamped: run.crash_from_stamped,
         verdict: run.assessment.verdict,
-        line: facts::match_line(run, work.lengths()),
+        coverage: Some(run.assessment.coverage),
+        reason: run.assessment.reasons.first().cloned(),
         crash_revision,
+    }
+}
+
+impl Placing {
+    /// The match in a line.
+    pub(in crate::app) fn line(&self, lengths: Lengths) -> String {
+        let verdict = self.verdict;
+        match &self.coverage {
+            Some(coverage) => facts::line_of(verdict, (coverage, self.reason.as_ref()), lengths),
+            None => verdict.label().to_owned(),
+        }
     }
 }
 

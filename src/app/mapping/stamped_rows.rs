@@ -144,7 +144,7 @@ impl AppState {
         let Some(task) = further.task(both) else {
             return match &further.placing {
                 Some(placing) if further.pose == FurtherPose::Matched => {
-                    StampedState::Matched(placing.verdict, placing.line.clone())
+                    StampedState::Matched(placing.verdict, placing.line(self.lengths()))
                 }
                 _ => StampedState::AsFirst,
             };

@@ -230,7 +230,8 @@ impl AppState {
                 is_current: Some(placing.crash_revision) == crash,
                 crash_from_stamped: placing.crash_from_stamped,
                 verdict: placing.verdict,
-                line: placing.line.clone(),
+                coverage: placing.coverage,
+                reason: placing.reason.clone(),
             }),
         };
         document.mapping.further.iter().map(entry).collect()

@@ -216,7 +216,8 @@ impl AppState {
             placing: entry.placing.as_ref().map(|placing| Placing {
                 crash_from_stamped: placing.crash_from_stamped,
                 verdict: placing.verdict,
-                line: placing.line.clone(),
+                coverage: placing.coverage,
+                reason: placing.reason.clone(),
                 crash_revision: if found.is_changed {
                     0
                 } else {

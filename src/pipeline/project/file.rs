@@ -13,7 +13,7 @@ use serde_json::{Map, Value};
 
 use super::error::ProjectError;
 use super::text;
-use crate::assess::Verdict;
+use crate::assess::{Coverage, Reason, Verdict};
 use crate::formats::{Disk, FileHash, FileSource as _, ReadOptions, Selection};
 use crate::geometry::Similarity;
 use crate::monitor::Monitor;
@@ -156,8 +156,12 @@ pub struct PlacingEntry {
     pub crash_from_stamped: Similarity,
     /// Whether the pose can be used.
     pub verdict: Verdict,
-    /// The match in a line.
-    pub line: String,
+    /// Distances and overlap; older projects have a line of text instead.
+    #[serde(default)]
+    pub coverage: Option<Coverage>,
+    /// The first reason for the verdict.
+    #[serde(default)]
+    pub reason: Option<Reason>,
 }
 
 /// A file of a project.
