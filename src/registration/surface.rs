@@ -25,6 +25,8 @@ pub struct Surface {
     /// The tree for nearest nodes, made when first asked for.
     nodes: OnceLock<PointTree>,
     vertex_of: Vec<u32>,
+    /// For every node before joining that triangles use, in their order, its vertex.
+    given: Vec<u32>,
     normals: CornerNormals,
     vertex_areas: Vec<f64>,
     /// For each triangle a bit for each side that is a border edge.
@@ -69,8 +71,8 @@ impl Surface {
         side: &'static str,
         monitor: &Monitor,
     ) -> Result<Self, RegistrationError> {
-        let mut clean = CleanMesh::of(mesh.clone(), monitor)?;
-        let vertex_of = std::mem::take(&mut clean.vertex_of);
+        let clean = CleanMesh::of(mesh.clone(), monitor)?;
+        let vertex_of = clean.vertex_of.clone();
         let mut surface = Self::prepare(clean, side, monitor)?;
         surface.vertex_of = vertex_of;
         Ok(surface)
@@ -90,8 +92,9 @@ impl Surface {
             triangle_of,
             ..
         } = clean;
-        drop((vertex_of, triangle_of));
-        Self::assemble(mesh, side, monitor, |mesh, vectors| {
+        drop(triangle_of);
+        let given = vertex_of.into_iter().filter(|&v| v != u32::MAX).collect();
+        Self::assemble((mesh, given), side, monitor, |mesh, vectors| {
             let chordal_error = chordal_error(mesh, &topology, vectors, monitor)?;
             let border_edges = BorderEdges::of(mesh, &topology);
             // Inner edges take as much as the mesh, and only a deviation asks for them later, which lists them anew.
@@ -103,15 +106,15 @@ impl Surface {
     /// The surface mirrored at x = 0; what does not change is not made again.
     pub(super) fn mirrored(&self, monitor: &Monitor) -> Result<Self, RegistrationError> {
         let mesh = self.mesh.transformed(&Similarity::mirror_x());
-        Self::assemble(mesh, "source", monitor, |_, _| {
+        Self::assemble((mesh, self.given.clone()), "source", monitor, |_, _| {
             Ok((self.border_edges.flipped(), self.measures.chordal_error))
         })
     }
 
-    /// `of_edges` finds what depends on the edges of the mesh, given the area vectors of its triangles: its border and
+    /// A mesh with the vertices of the nodes as they were given. `of_edges` finds what depends on the edges of the mesh, given the area vectors of its triangles: its border and
     /// its chordal error.
     fn assemble<F>(
-        mesh: TriMesh,
+        (mesh, given): (TriMesh, Vec<u32>),
         side: &'static str,
         monitor: &Monitor,
         of_edges: F,
@@ -162,6 +165,7 @@ impl Surface {
             bvh: Arc::new(bvh?),
             nodes: OnceLock::new(),
             vertex_of: (0..mesh.n_vertices() as u32).collect(),
+            given,
             normals,
             vertex_areas,
             border_edges,
@@ -204,10 +208,10 @@ impl Surface {
         &self.vertex_of
     }
 
-    /// The vertices of the mesh passed in that triangles use, in their order.
+    /// The nodes that triangles use, in their order, each of those at one place counted.
     pub fn nodes_as_given(&self) -> Vec<Point3> {
-        let used = self.vertex_of.iter().filter(|&&v| v != u32::MAX);
-        used.map(|&v| self.mesh.positions()[v as usize]).collect()
+        let positions = self.mesh.positions();
+        self.given.iter().map(|&v| positions[v as usize]).collect()
     }
 
     /// Unit normals of the vertices.

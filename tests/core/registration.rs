@@ -3,7 +3,7 @@
 use std::sync::Mutex;
 
 use shapematch::assess::{AssessSettings, Verdict, assess};
-use shapematch::geometry::{Point3, Pose, Similarity, TriMesh, Vector3};
+use shapematch::geometry::{CleanMesh, Point3, Pose, Similarity, TriMesh, Vector3};
 use shapematch::monitor::Monitor;
 use shapematch::registration::*;
 use shapematch::samples::disturb::sprung;
@@ -280,6 +280,51 @@ fn umeyama_matches_the_same_numbering_with_and_without_scale() {
         refused,
         Err(RegistrationError::UnequalCounts { .. })
     ));
+}
+
+/// One mesh has an open slit, of which the other has both sides at one place: the numbering is the same.
+#[test]
+fn umeyama_pairs_nodes_at_one_place_one_by_one() {
+    let part = Surface::new(&pan(14.0, 0.1, everywhere), "source").unwrap();
+    let (mut positions, mut triangles) = TriMesh::clone(part.mesh()).into_parts();
+    let n = positions.len();
+    let n_around = |v: u32| {
+        triangles
+            .iter()
+            .filter(|corners| corners.contains(&v))
+            .count()
+    };
+    let split = (0..n as u32).max_by_key(|&v| n_around(v)).unwrap();
+    // A second node at that place comes first of all, and one of the triangles hangs on it.
+    positions.insert(0, positions[split as usize]);
+    for corner in triangles.iter_mut().flatten() {
+        *corner += 1;
+    }
+    let mut corners = triangles.iter_mut().flatten();
+    *corners.find(|v| **v == split + 1).unwrap() = 0;
+    let closed = TriMesh::new(positions.clone(), triangles.clone()).unwrap();
+    positions[0] += Vector3::new(0.02, 0.01, 0.0);
+    let open = TriMesh::new(positions, triangles).unwrap();
+    let prepared = |mesh: &TriMesh| {
+        let clean = CleanMesh::of(mesh.clone(), &Monitor::silent()).unwrap();
+        Surface::prepare(clean, "chosen", &Monitor::silent()).unwrap()
+    };
+    let truth = placement(8);
+    let source = closed.transformed(&truth.inverse());
+    let surfaces = [&source, &open].map(prepared);
+    assert_eq!(surfaces[0].mesh().n_vertices(), n);
+    for (surface, mesh) in surfaces.iter().zip([&source, &open]) {
+        assert_eq!(surface.nodes_as_given(), mesh.positions());
+    }
+    let [source_surface, target] = &surfaces;
+    let input = MatchInput {
+        source: source_surface,
+        target,
+        reduced: None,
+    };
+    let settings = MatchSettings::of(Method::Umeyama);
+    let outcome = match_surfaces(&input, &settings, &Monitor::silent()).unwrap();
+    assert!(worst_node(&source, &truth, &outcome.target_from_source) < 0.02);
 }
 
 /// Umeyama by singular values, as written in the paper with the sign of det U · det V.
