@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::{ClosestPoint, NormalFilter, SurfaceHit, closest_point_on_triangle};
 use crate::geometry::{Point3, TriMesh};
 
-/// Asks every triangle. The measure that the tree is compared with, and the quickest way for a
-/// handful of triangles. O(triangles) per query.
+/// Asks every triangle. The measure that tests compare the tree with; nothing else uses it. O(triangles) per
+/// query.
 #[derive(Debug, Clone)]
 pub struct BruteForce {
     mesh: Arc<TriMesh>,

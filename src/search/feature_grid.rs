@@ -126,7 +126,8 @@ impl FeatureGrid {
     }
 
     /// Largest error of a cell's distance, in grid units: the diagonal of a cell and a half.
-    pub fn slack(&self) -> f32 {
+    #[cfg(test)]
+    fn slack(&self) -> f32 {
         1.5 * 3.0_f32.sqrt() * self.cell()
     }
 
