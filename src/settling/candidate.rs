@@ -14,6 +14,8 @@ use crate::monitor::Cancelled;
 
 /// Where so much less of the smaller part meets the other, a pose that fits as closely does not fit as well.
 pub(super) const LITTLE_LESS: f64 = 0.02;
+/// Where so much more of it meets, holes that have their counterpart besides are no accident.
+const MUCH_MORE_MET: f64 = 0.1;
 /// Where each part has a piece that the other lacks, a pose under which at least this share of the smaller part meets
 /// the other is as likely as one under which more does.
 pub(super) const LEAST_SHARED: f64 = 0.5;
@@ -132,6 +134,8 @@ pub(super) struct Candidate {
     pub(super) outlines_are_no_evidence: bool,
     /// Whether outlines lie apart by more than is accepted.
     outlines_lie_apart: bool,
+    /// Whether surfaces do, all over or at one place.
+    surfaces_differ: bool,
     /// Whether nothing at all speaks against one shape, a bend neither.
     pub(super) is_one_shape: bool,
     /// Share of the smaller part that meets the other.
@@ -179,6 +183,12 @@ impl Candidate {
             offset: shape.offset.unwrap_or(0.0),
             outlines_lie_apart: (shape.reasons.iter())
                 .any(|reason| matches!(reason, ShapeReason::Borders { .. })),
+            surfaces_differ: (shape.reasons.iter()).any(|reason| {
+                matches!(
+                    reason,
+                    ShapeReason::Surface { .. } | ShapeReason::Local { .. }
+                )
+            }),
             met: shape.met,
             only_overhangs: false,
             bend: shape.springback,
@@ -240,6 +250,15 @@ impl Candidate {
             && self.lies_much_closer_elsewhere_than(other, noise)
     }
 
+    /// Whether nothing differs here while the surfaces, which lie no closer, differ somewhere under another pose: an
+    /// end that overhangs here may be drawn onto a border there.
+    pub(super) fn fits_where_surfaces_differ_under(&self, other: &Self) -> bool {
+        !self.differs()
+            && other.surfaces_differ
+            && self.met >= LEAST_SHARED
+            && self.apart_in_all() <= other.apart_in_all()
+    }
+
     /// Whether as much of the smaller part meets the other as under another pose.
     pub(super) fn meets_as_much_as(&self, other: &Self) -> bool {
         self.met >= other.met - LITTLE_LESS
@@ -267,9 +286,12 @@ impl Candidate {
     }
 
     /// Whether the shapes surely differ less under this pose: there are fewer differences, or as many while holes
-    /// that lie alone under the other pose have their counterpart, or none while both outlines and holes lie closer.
+    /// that lie alone under the other pose have their counterpart or while much more meets and more holes do, or none
+    /// while both outlines and holes lie closer.
     pub(super) fn beats(&self, other: &Self) -> bool {
-        let pairs_holes = self.n_holes > other.n_holes && self.n_alone < other.n_alone;
+        let pairs_holes = self.n_holes > other.n_holes && self.n_alone < other.n_alone
+            || self.n_holes >= other.n_holes + HOLES_THAT_HOLD
+                && self.met >= other.met + MUCH_MORE_MET;
         self.n_differences < other.n_clear
             || pairs_holes && self.n_differences <= other.n_differences
             || self.n_differences == 0 && other.n_differences > 0 && self.lies_closer_than(other)
@@ -405,6 +427,56 @@ mod tests {
         assert!(!right.beats(&at([0.9, 2.4], &[hole])));
         assert!(!right.beats(&at([3.2, 2.4], &[])));
         assert!(!at([0.6, 0.4], &[hole]).beats(&at([3.2, 2.4], &[hole])));
+    }
+
+    #[test]
+    fn holes_and_much_more_of_the_part_tell_a_pose_from_one_that_overhangs() {
+        let at = |n_holes, met| Candidate {
+            n_holes,
+            met,
+            ..candidate(&[])
+        };
+        let overhanging = at(0, 0.76);
+        assert!(at(2, 0.95).beats(&overhanging));
+        // A single hole lies on another one by chance, and a little more of the part is met by chance too.
+        assert!(!at(1, 0.95).beats(&overhanging));
+        assert!(!at(2, 0.8).beats(&overhanging));
+    }
+
+    #[test]
+    fn an_end_drawn_onto_a_border_differs_where_it_did_not() {
+        let (at, limit, is_end) = (Point3::origin(), 5.0, true);
+        let by = 5.4;
+        let end = ShapeReason::Local {
+            by,
+            limit,
+            at,
+            is_end,
+        };
+        let hole = ShapeReason::Hole {
+            by,
+            limit,
+            at,
+            is_mean: false,
+        };
+        let lies = |met, bend, reasons: &[ShapeReason]| Candidate {
+            met,
+            bend,
+            remainder: 0.0,
+            ..candidate(reasons)
+        };
+        let drawn = lies(0.99, 0.03, &[end]);
+        assert!(lies(0.94, 0.01, &[]).fits_where_surfaces_differ_under(&drawn));
+        // Where it lies farther apart, too little meets or it differs itself, it is no rival; nor of a hole's place.
+        for other in [
+            lies(0.94, 0.05, &[]),
+            lies(0.4, 0.01, &[]),
+            lies(0.94, 0.01, &[end]),
+        ] {
+            assert!(!other.fits_where_surfaces_differ_under(&drawn));
+        }
+        let by_hole = lies(0.99, 0.03, &[hole]);
+        assert!(!lies(0.94, 0.01, &[]).fits_where_surfaces_differ_under(&by_hole));
     }
 
     #[test]

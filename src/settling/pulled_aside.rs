@@ -15,7 +15,7 @@ const LITTLE_REMAINDER: f64 = 0.25;
 pub enum PulledAside {
     /// It is worse than the one that the surfaces found.
     Worse,
-    /// It is as likely: more of the parts meets, and their surfaces lie much farther apart.
+    /// It is as likely: more of the parts meets, and their surfaces lie much farther apart or differ somewhere.
     Rival,
 }
 
@@ -30,7 +30,8 @@ pub enum Remainder {
 
 /// What speaks against a pose that borders and holes support, beside the one that the surfaces found: that one has
 /// surely fewer differences, or what remains besides a bend has clearly grown where it may not, or a piece of the parts
-/// lies on each other where all of them lies apart. Springback keeps surfaces farther apart than either pose, so that
+/// lies on each other where all of them lies apart, or the surfaces differ somewhere only under the one that borders
+/// support. Springback keeps surfaces farther apart than either pose, so that
 /// their distance alone does not decide: an addendum all round that ends anywhere may pull a hood aside by 30 mm.
 /// `None` where nothing does; poses that lie within the tolerance of each other are as good. O(border edges + nodes ·
 /// log triangles).
@@ -63,8 +64,9 @@ pub fn pulled_aside(
     if before.beats(after) || has_grown && before.n_differences <= after.n_differences {
         return Ok(Some(PulledAside::Worse));
     }
-    let lies_closer = before.lies_much_closer_elsewhere_than(after, distances.noise);
-    Ok(lies_closer.then_some(PulledAside::Rival))
+    let is_rival = before.lies_much_closer_elsewhere_than(after, distances.noise)
+        || before.fits_where_surfaces_differ_under(after);
+    Ok(is_rival.then_some(PulledAside::Rival))
 }
 
 #[cfg(test)]
