@@ -140,15 +140,16 @@ impl<'a> ContactSearch<'a> {
     }
 
     /// The scale that would fit the source best to the places of the target that it meets under a pose, times that of
-    /// the pose; `None` where they do not meet. O(nodes · log triangles).
-    pub(crate) fn best_scale(&mut self, pose: &Similarity) -> Option<f64> {
-        let list = self.at(pose)?.list;
-        let beside = |contact: &Contact| {
-            let side = if self.of_source { -1.0 } else { 1.0 };
-            contact.point + contact.normal * (side * contact.gap)
-        };
-        let others: Vec<Point3> = list.iter().map(beside).collect();
-        let pairs = list.iter().zip(&others);
+    /// the pose; `None` where they do not meet. An offset of the sheets by at most `offset` is no scale: a tube is wider
+    /// at its outer skin. O(nodes · log triangles).
+    pub(crate) fn best_scale(&mut self, pose: &Similarity, offset: f64) -> Option<f64> {
+        let met = self.at(pose)?;
+        let side = if self.of_source { -1.0 } else { 1.0 };
+        let beside =
+            |(contact, gap): (&Contact, f64)| contact.point + contact.normal * (side * gap);
+        let gaps = met.without_offset(offset).into_iter();
+        let others: Vec<Point3> = met.list.iter().zip(gaps).map(beside).collect();
+        let pairs = met.list.iter().zip(&others);
         let pairs = pairs.map(|(contact, other)| (&contact.point, other, contact.weight));
         let scale = fit_pairs(pairs, Motion::Rigid).ok()?.scale;
         Some(pose.scale * if self.of_source { scale } else { 1.0 / scale })

@@ -14,7 +14,7 @@ use super::shape::{ShapeStatement, only_overhangs};
 use super::tolerance::{AssessSettings, UNREMARKABLE};
 use super::verdict::Verdict;
 use crate::registration::starts::StartKind;
-use crate::registration::{MatchOutcome, Termination};
+use crate::registration::{MatchOutcome, MirrorCheck, Termination};
 
 /// Fraction of the smaller part that meets the other one for GOOD.
 const ENOUGH_MET: f64 = 0.75;
@@ -122,16 +122,27 @@ fn hand(
     shape: &ShapeStatement,
     mirrored: Option<&ShapeStatement>,
 ) -> Option<Reason> {
-    let score_ratio = assessment.mirror_check.score_ratio?;
+    let MirrorCheck {
+        score_ratio,
+        by_borders,
+        ..
+    } = assessment.mirror_check;
+    let score_ratio = score_ratio?;
     if mirrored.is_some_and(|mirrored| fits_better(shape, mirrored)) {
         return None;
     }
     let is_sure = score_ratio < SURELY_OPPOSITE;
     let fits_better = |mirrored| fits_better(mirrored, shape);
     if is_sure || score_ratio < OPPOSITE_HAND && mirrored.is_none_or(fits_better) {
-        return Some(Reason::OppositeHand { score_ratio });
+        return Some(Reason::OppositeHand {
+            score_ratio,
+            by_borders,
+        });
     }
-    (score_ratio < NEAR_MIRROR).then_some(Reason::NearMirrorImage { score_ratio })
+    (score_ratio < NEAR_MIRROR).then_some(Reason::NearMirrorImage {
+        score_ratio,
+        by_borders,
+    })
 }
 
 /// Springback raises the scores of both hands, but not by the same. One shape fits better where less remains of

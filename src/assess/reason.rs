@@ -17,12 +17,18 @@ pub enum Reason {
         /// Score of the opposite hand over the result's.
         #[serde(with = "any_float")]
         score_ratio: f64,
+        /// Whether borders and holes say so, and the score is no measured error.
+        #[serde(default)]
+        by_borders: bool,
     },
     /// The source is nearly its own mirror image, and mirrored it fits a little better.
     NearMirrorImage {
         /// Score of the opposite hand over the result's.
         #[serde(with = "any_float")]
         score_ratio: f64,
+        /// Whether borders and holes say so, and the score is no measured error.
+        #[serde(default)]
+        by_borders: bool,
     },
     /// The target consists of more parts than the source belongs to.
     SeveralParts {

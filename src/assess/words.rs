@@ -50,15 +50,14 @@ impl Reason {
     /// The reason in words, without a capital and a full stop.
     pub fn words(&self, lengths: Lengths) -> String {
         match self {
-            Self::OppositeHand { score_ratio } => format!(
-                "looks like the opposite-hand part ({} with that hand): match with it, or choose the \
-                 other part",
-                error_beside(*score_ratio)
-            ),
-            Self::NearMirrorImage { score_ratio } => format!(
-                "the part is nearly its own mirror image: mirrored, the {}",
-                error_beside(*score_ratio)
-            ),
+            Self::OppositeHand {
+                score_ratio,
+                by_borders,
+            } => opposite_hand(&fit_of_hand(*score_ratio, *by_borders)),
+            Self::NearMirrorImage {
+                score_ratio,
+                by_borders,
+            } => near_mirror_image(&fit_of_hand(*score_ratio, *by_borders)),
             Self::SeveralParts {
                 n_parts,
                 size_ratio,
@@ -135,6 +134,25 @@ pub fn error_beside(score_ratio: f64) -> String {
     match beside(score_ratio) {
         equal if equal == EQUAL => format!("{equal} error"),
         differs => format!("error {differs}"),
+    }
+}
+
+fn opposite_hand(fit: &str) -> String {
+    format!(
+        "looks like the opposite-hand part ({fit} with that hand): match with it, or choose the other part"
+    )
+}
+
+fn near_mirror_image(fit: &str) -> String {
+    format!("the part is nearly its own mirror image: mirrored, {fit}")
+}
+
+/// How the opposite hand fits better.
+pub fn fit_of_hand(score_ratio: f64, by_borders: bool) -> String {
+    if by_borders {
+        "more borders and holes lie together".to_owned()
+    } else {
+        error_beside(score_ratio)
     }
 }
 
@@ -302,7 +320,7 @@ impl ShapeKind {
 }
 
 impl ShapeStatement {
-    /// "same part, deformed: bend and twist 0.630 mm (limit 5.00 mm), remainder 0.130 mm (limit 1.00 mm)".
+    /// "same part, deformed: bend and twist 0.63 of 5.00 mm, remainder 0.13 of 1.00 mm".
     pub fn words(&self, lengths: Lengths) -> String {
         let label = self.kind.label();
         if !self.remainder.is_finite() {

@@ -140,6 +140,9 @@ pub struct MirrorCheck {
     /// images of the result, or from a search of its own where the result was not certain. `None`
     /// where both hands competed anyway, or the match was stopped.
     pub score_ratio: Option<f64>,
+    /// Whether the ratio is what borders and holes say, where surfaces fit both hands, and no measured error.
+    #[serde(default)]
+    pub by_borders: bool,
     /// The pose of the opposite hand that this is the score of; it mirrors.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub target_from_source: Option<Similarity>,

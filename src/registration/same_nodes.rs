@@ -69,6 +69,7 @@ pub(super) fn match_same_nodes(
         scale_check: ScaleCheck::new(input.source, input.target, fit.scale),
         mirror_check: MirrorCheck {
             score_ratio: None,
+            by_borders: false,
             target_from_source: None,
         },
         timings: MatchTimings {

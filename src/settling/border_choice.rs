@@ -19,7 +19,7 @@ use crate::geometry::Similarity;
 use crate::monitor::Cancelled;
 use crate::registration::{Alternative, MatchOutcome, same_pose};
 
-pub use hand::hand_by_borders;
+pub use hand::{OppositeHand, hand_by_borders};
 
 /// Poses whose borders are compared at most.
 const MOST_POSES: usize = 64;

@@ -12,7 +12,7 @@ use crate::assess::contact::MAX_NODES;
 use crate::assess::statements::Outlines;
 use crate::assess::tolerance::is_source_smaller;
 use crate::geometry::Similarity;
-use crate::monitor::Cancelled;
+use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{MatchOutcome, Surface, WideSearch, is_piece};
 
 /// The pose under which holes lie on like ones of the other part, where those of the pose of `outcome` do not: of a
@@ -73,6 +73,20 @@ fn poses<'a>(context: &'a PairContext<'_>) -> Result<&'a [Similarity], Cancelled
     if let Some(known) = context.on_holes.get() {
         return Ok(known);
     }
+    let found = found_by(context, WideSearch::on_holes)?;
+    Ok(context.on_holes.get_or_init(|| found))
+}
+
+/// The same for the opposite hand.
+pub(super) fn mirrored_poses(context: &PairContext<'_>) -> Result<Vec<Similarity>, Cancelled> {
+    found_by(context, WideSearch::on_holes_mirrored)
+}
+
+/// What a search finds for the smaller part on the other, as poses of the source.
+fn found_by<'a>(
+    context: &PairContext<'a>,
+    search: impl Fn(&WideSearch<'a>, &Monitor) -> Result<Vec<Similarity>, Cancelled>,
+) -> Result<Vec<Similarity>, Cancelled> {
     let PairContext { source, target, .. } = *context;
     let is_source_smaller = is_source_smaller(source, target, 1.0);
     let [data, model] = if is_source_smaller {
@@ -80,16 +94,16 @@ fn poses<'a>(context: &'a PairContext<'_>) -> Result<&'a [Similarity], Cancelled
     } else {
         [target, source]
     };
-    let mut found = match WideSearch::new(data, model) {
-        Some(search) => search.on_holes(context.monitor)?,
-        None => Vec::new(),
+    let Some(of_smaller) = WideSearch::new(data, model) else {
+        return Ok(Vec::new());
     };
+    let mut found = search(&of_smaller, context.monitor)?;
     if !is_source_smaller {
         for pose in &mut found {
             *pose = pose.inverse();
         }
     }
-    Ok(context.on_holes.get_or_init(|| found))
+    Ok(found)
 }
 
 /// Of these the poses that lie farther than `apart` from all known ones, which are more exact.

@@ -22,7 +22,7 @@ mod remove_trims;
 
 pub use all_pairs::is_better_with_all_pairs;
 pub use alternatives::chosen_by_shape;
-pub use border_choice::{hand_by_borders, held_by_borders};
+pub use border_choice::{OppositeHand, hand_by_borders, held_by_borders};
 pub use chosen_pose::ChosenPose;
 pub use context::PairContext;
 pub use full_overlap::placed_as_a_whole;
@@ -37,7 +37,9 @@ use crate::assess::AssessSettings;
 use crate::assess::contact::MAX_NODES;
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
-use crate::registration::{MatchOutcome, MatchSettings, Method, Surface, Termination, same_pose};
+use crate::registration::{
+    MatchOutcome, MatchSettings, Method, MirrorCheck, Surface, Termination, same_pose,
+};
 use chosen_pose::as_likely;
 
 /// Chooses and moves the pose of `outcome`, of source and target. `check` is what it will be assessed by. Nothing
@@ -67,8 +69,12 @@ pub fn settle(
         outcome.target_from_source = pose;
     }
     // Both hands are compared where their surfaces lie closest.
-    if let Some(ratio) = hand_by_borders(&context, outcome)? {
-        outcome.mirror_check.score_ratio = Some(ratio);
+    if let Some(opposite) = hand_by_borders(&context, outcome)? {
+        outcome.mirror_check = MirrorCheck {
+            score_ratio: Some(opposite.score_ratio),
+            by_borders: true,
+            target_from_source: Some(opposite.target_from_source),
+        };
     }
     remove_bend(&context, outcome)?;
     if check.remove_offset
@@ -136,7 +142,9 @@ fn measure_scale(
     context.check()?;
     let reach = context.distances(pose.scale).reach;
     let mut contacts = context.contacts(pose.scale, reach, MAX_NODES);
-    outcome.scale_check.pair_scale = contacts.best_scale(&pose).unwrap_or(pose.scale);
+    let offset = context.settings.thickness.unwrap_or(0.0);
+    let scale = contacts.best_scale(&pose, offset);
+    outcome.scale_check.pair_scale = scale.unwrap_or(pose.scale);
     Ok(())
 }
 

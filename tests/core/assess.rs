@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use shapematch::assess::*;
-use shapematch::geometry::{Point3, Pose, Similarity, TriMesh, Vector3};
+use shapematch::geometry::{Matrix3, Point3, Pose, Similarity, TriMesh, Vector3};
 use shapematch::monitor::{Monitor, Observer, Progress};
 use shapematch::registration::*;
 use shapematch::samples::disturb;
@@ -195,9 +195,15 @@ fn the_opposite_hand_needs_more_than_a_lower_score() {
     };
     // The shape at that pose is no better than at the result's, so the score alone is not believed.
     let score_ratio = 0.7;
-    let near = Reason::NearMirrorImage { score_ratio };
+    let near = Reason::NearMirrorImage {
+        score_ratio,
+        by_borders: false,
+    };
     assert_eq!(reasons(Some(same)), (Verdict::Check, near));
-    let opposite = Reason::OppositeHand { score_ratio };
+    let opposite = Reason::OppositeHand {
+        score_ratio,
+        by_borders: false,
+    };
     assert_eq!(reasons(None), (Verdict::Poor, opposite));
 }
 
@@ -403,7 +409,10 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
         point: Point3::origin(),
     };
     let poor = [
-        Reason::OppositeHand { score_ratio: 0.5 },
+        Reason::OppositeHand {
+            score_ratio: 0.5,
+            by_borders: false,
+        },
         Reason::SeveralParts {
             n_parts: 12,
             size_ratio: 8.6,
@@ -420,7 +429,10 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
         },
     ];
     let check = [
-        Reason::NearMirrorImage { score_ratio: 0.9 },
+        Reason::NearMirrorImage {
+            score_ratio: 0.9,
+            by_borders: true,
+        },
         Reason::PairScale { scale: 1.1 },
         Reason::Uncertain {
             by: f64::INFINITY,
@@ -865,6 +877,48 @@ fn outlines_that_end_a_few_millimetres_apart_do_not_pull_a_part_aside() {
         &outcome.target_from_source,
     );
     assert!(error < 0.05, "{error} mm");
+}
+
+/// A Z-profile along x with three holes that distinguish its ends, sides and hands.
+fn z_profile() -> TriMesh {
+    let step = |_: f64, y: f64| 20.0 * ((y - 60.0) / 6.0).tanh();
+    holed(
+        [40, 12],
+        [0.0; 2],
+        &[[4, 1, 2], [14, 9, 2], [20, 1, 2]],
+        step,
+    )
+}
+
+#[test]
+fn holes_tell_the_opposite_hand_of_a_profile_that_has_several_poses() {
+    let target = z_profile();
+    // The mirrored part moved so that its surface and its outline lie on the target.
+    let onto = Similarity {
+        translation: Vector3::new(400.0, 0.0, 0.0),
+        ..Similarity::mirror_x()
+    };
+    let surface = |mesh: &TriMesh, name| Surface::new(mesh, name).unwrap();
+    let (source, target) = (
+        surface(&target.transformed(&onto), "source"),
+        surface(&target, "target"),
+    );
+    let mut outcome = matched(&source, &target);
+    outcome.target_from_source = Similarity::identity();
+    // Turned about the profile's axis too, surface and outline lie on the target as well, and no hole on any other.
+    let half_turn = Similarity {
+        rotation: Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)),
+        translation: Vector3::new(0.0, 120.0, 0.0),
+        scale: 1.0,
+    };
+    outcome.mirror_check.score_ratio = Some(1.0);
+    outcome.mirror_check.target_from_source = Some(half_turn.after(&onto));
+    let (settings, monitor) = (AssessSettings::default(), Monitor::silent());
+    let context = PairContext::new([&source, &target], &settings, &monitor);
+    let opposite = hand_by_borders(&context, &outcome).unwrap().unwrap();
+    let error = worst_node(source.mesh(), &onto, &opposite.target_from_source);
+    assert!(error < 0.1, "{error} mm");
+    assert!(opposite.score_ratio < 0.8, "{}", opposite.score_ratio);
 }
 
 #[test]

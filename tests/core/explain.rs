@@ -114,9 +114,21 @@ fn the_part_of_the_other_hand_comes_before_a_mapping() {
     window.act(Action::MatchOrStop);
     let score_ratio = 0.7;
     for (reason, is_better) in [
-        (Reason::OppositeHand { score_ratio }, true),
+        (
+            Reason::OppositeHand {
+                score_ratio,
+                by_borders: false,
+            },
+            true,
+        ),
         // Its own mirror image is no other part.
-        (Reason::NearMirrorImage { score_ratio }, false),
+        (
+            Reason::NearMirrorImage {
+                score_ratio,
+                by_borders: false,
+            },
+            false,
+        ),
     ] {
         reassess(&mut window, |assessment| {
             assessment.verdict = Verdict::Poor;

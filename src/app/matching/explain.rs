@@ -5,7 +5,7 @@ use crate::app::{
     Action, AppState, BottomTab, Command, MatchCommand, MatchResult, PartCommand, ViewCommand,
 };
 use crate::assess::{
-    Assessment, Clarity, Reason, ShapeReason, Twin, Verdict, as_well, error_beside,
+    Assessment, Clarity, Reason, ShapeReason, Twin, Verdict, as_well, error_beside, fit_of_hand,
 };
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::registration::{Hand, Method, StartMethod};
@@ -189,16 +189,21 @@ impl AppState {
     }
 
     fn hand_cause(&self, assessment: &Assessment) -> Option<Cause> {
-        let ratio = assessment.reasons.iter().find_map(|reason| match reason {
-            Reason::OppositeHand { score_ratio } | Reason::NearMirrorImage { score_ratio } => {
-                Some(*score_ratio)
+        let fit = assessment.reasons.iter().find_map(|reason| match reason {
+            Reason::OppositeHand {
+                score_ratio,
+                by_borders,
             }
+            | Reason::NearMirrorImage {
+                score_ratio,
+                by_borders,
+            } => Some(fit_of_hand(*score_ratio, *by_borders)),
             _ => None,
         })?;
         let hand = self.document.recipe.settings.hand;
         Some(Cause {
             title: OTHER_HAND.to_owned(),
-            evidence: format!("The other hand fits better: {}.", error_beside(ratio)),
+            evidence: format!("The other hand fits better: {fit}."),
             remedy: self.retry("Match the opposite hand", |recipe| {
                 recipe.settings.hand = match hand {
                     Hand::Mirrored => Hand::Same,

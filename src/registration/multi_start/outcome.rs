@@ -72,6 +72,7 @@ pub(crate) fn decide(
         scale_check: ScaleCheck::new(input.source, input.target, pair_scale),
         mirror_check: MirrorCheck {
             score_ratio: opposite.map(|(ratio, _)| ratio),
+            by_borders: false,
             target_from_source: opposite.map(|(_, pose)| pose),
         },
         timings,

@@ -71,7 +71,13 @@ impl Holes {
         grid: &FeatureGrid,
     ) -> Self {
         let of_model = holes(model, |point| (point - grid.origin()) * cloud.scale);
-        let of_data = holes(data, |point| (point - cloud.center) * cloud.scale);
+        let mut of_data = holes(data, |point| (point - cloud.center) * cloud.scale);
+        if cloud.is_mirrored {
+            for hole in &mut of_data {
+                hole.center.x = -hole.center.x;
+                hole.normal.x = -hole.normal.x;
+            }
+        }
         let edge = [data, model].map(|part| part.measures().mean_edge_length);
         Self {
             data: of_data,

@@ -234,8 +234,21 @@ impl<'a> WideSearch<'a> {
     /// are as exact as the middles of a few holes. Empty where a part has no holes.
     /// O(holes of the data² · holes of the model² + poses), all bounded.
     pub fn on_holes(&self, monitor: &Monitor) -> Result<Vec<Similarity>, Cancelled> {
-        let holes = Holes::of(&self.cloud, (self.data, self.model), &self.grid);
-        let ground = self.ground(&self.cloud);
+        self.on_holes_with(&self.cloud, monitor)
+    }
+
+    /// The same for the opposite hand: the poses mirror.
+    pub fn on_holes_mirrored(&self, monitor: &Monitor) -> Result<Vec<Similarity>, Cancelled> {
+        self.on_holes_with(&self.cloud.mirrored(), monitor)
+    }
+
+    fn on_holes_with(
+        &self,
+        cloud: &Cloud,
+        monitor: &Monitor,
+    ) -> Result<Vec<Similarity>, Cancelled> {
+        let holes = Holes::of(cloud, (self.data, self.model), &self.grid);
+        let ground = self.ground(cloud);
         let first = holes.first_poses(monitor)?.into_iter();
         let survivors = rounds::run(ground, first, &HOLE_ROUNDS, monitor)?.into_iter();
         let moved = survivors.map(|candidate| holes.aligned(&candidate.motion));
@@ -245,7 +258,7 @@ impl<'a> WideSearch<'a> {
         moved.truncate(MOST_ON_HOLES);
         let poses = moved
             .iter()
-            .map(|(_, motion)| self.cloud.model_from_data(motion, &self.grid));
+            .map(|(_, motion)| cloud.model_from_data(motion, &self.grid));
         Ok(poses.collect())
     }
 

@@ -10,6 +10,7 @@ use crate::monitor::Cancelled;
 use crate::registration::MatchOutcome;
 use crate::settling::context::PairContext;
 use crate::settling::free_motion_search::poses_along;
+use crate::settling::holes;
 use crate::settling::refine_with_borders::Least;
 
 /// Shares of the borders that differ by less than this do not distinguish hands.
@@ -20,13 +21,23 @@ const HINT: f64 = 0.9;
 /// Scores of the opposite hand above this many times the result's need no other opinion.
 const OPPOSITE_IS_CLEAR: f64 = 1.3;
 
-/// Score of the opposite hand over that of the result, where the surfaces fit both: a hole on one side
-/// distinguishes the left part from the right one. `None` where the surfaces decide, or the opposite hand found
-/// no pose.
+/// The opposite hand as borders and holes rate it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OppositeHand {
+    /// Its score over that of the result.
+    pub score_ratio: f64,
+    /// The pose that this is the score of; it mirrors.
+    pub target_from_source: Similarity,
+}
+
+/// The opposite hand where the surfaces fit both: a hole on one side distinguishes the left part from the right one.
+/// Where holes of the result have no counterpart, poses under which holes of the opposite hand lie on like ones are
+/// looked at too, since surfaces may fit several of them. `None` where the surfaces decide, or the opposite hand found
+/// no pose. O(poses · (border edges + nodes · log triangles)).
 pub fn hand_by_borders(
     context: &PairContext<'_>,
     outcome: &MatchOutcome,
-) -> Result<Option<f64>, Cancelled> {
+) -> Result<Option<OppositeHand>, Cancelled> {
     context.check()?;
     let check = &outcome.mirror_check;
     let is_near = check
@@ -47,6 +58,9 @@ pub fn hand_by_borders(
         poses = poses_along(context, mirrored, &free, MOST_SLID)?;
     }
     poses.push(*mirrored);
+    if result.missing > 0.0 && holes::can_place(context, found) {
+        poses.extend(holes::mirrored_poses(context)?);
+    }
     let by_borders = comparison.by_borders(&poses)?;
     let refine = |pose: &Similarity| comparison.refined(pose, Least::Any);
     let refined: Result<Vec<Option<Refined>>, Cancelled> =
@@ -67,5 +81,8 @@ pub fn hand_by_borders(
     } else {
         0.0
     };
-    Ok(fits_as_well.then(|| ratio.max(least)))
+    Ok(fits_as_well.then(|| OppositeHand {
+        score_ratio: ratio.max(least),
+        target_from_source: opposite.pose,
+    }))
 }
