@@ -285,10 +285,11 @@ impl Lengths {
             .unwrap_or(usual)
     }
 
-    /// A length with the limit it is held against: `0.710 mm (limit 3.89 mm)`.
+    /// A length beside the limit it is held against: `0.71 of 3.89 mm`.
     pub fn within(self, value: f64, limit: f64) -> String {
         let [value, limit] = self.compared([value, limit]);
-        format!("{value} (limit {limit})")
+        let value = value.strip_suffix(self.suffix()).unwrap_or(&value);
+        format!("{value} of {limit}")
     }
 
     /// The number with its sign and the unit: `+0.381 mm`.
@@ -364,10 +365,10 @@ mod tests {
     #[test]
     fn a_length_stands_beside_its_limit() {
         let lengths = Lengths::new(Some(LengthUnit::Millimeter));
-        assert_eq!(lengths.within(0.71, 3.89), "0.710 mm (limit 3.89 mm)");
-        assert_eq!(lengths.within(0.0002, 0.2), "< 0.001 mm (limit 0.200 mm)");
-        assert_eq!(lengths.within(15.04, 15.0), "15.04 mm (limit 15.00 mm)");
-        assert_eq!(Lengths::default().within(0.71, 3.89), "0.710 (limit 3.89)");
+        assert_eq!(lengths.within(0.71, 3.89), "0.710 of 3.89 mm");
+        assert_eq!(lengths.within(0.0002, 0.2), "< 0.001 of 0.200 mm");
+        assert_eq!(lengths.within(15.04, 15.0), "15.04 of 15.00 mm");
+        assert_eq!(Lengths::default().within(0.71, 3.89), "0.710 of 3.89");
     }
 
     #[test]

@@ -285,6 +285,9 @@ impl Window {
             Err(message) => JobStage::Failed(message),
         };
         self.tell(id, key, stamp, stage);
+        if self.holds {
+            self.begin_held();
+        }
     }
 
     pub fn tell(&mut self, id: JobId, key: JobKey, stamp: Stamp, stage: JobStage) {
@@ -1923,7 +1926,7 @@ fn several_selected_parts_are_hidden_and_isolated_in_one_step() {
     window.apply(PartCommand::ToggleSelected(crash(11)));
     window.act(Action::IsolateSelected);
     assert_eq!(hidden(&window), [11]);
-    assert_eq!(window.state.history.undo_name(), Some("Show only rest"));
+    assert_eq!(window.state.history.undo_name(), Some("Show only 12 rest"));
     let stamped = window.state.document.part(Role::Stamped).unwrap();
     assert!(stamped.hidden.is_empty(), "nothing of it is selected");
     window.apply(PartCommand::Select(None));

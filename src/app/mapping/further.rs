@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::{FurtherPose, MapResult};
+use super::{FurtherPose, MapResult, Placing};
 use crate::app::follow_up::FollowUp;
 use crate::app::parts::length_factor_of;
 use crate::app::work::Work;
 use crate::app::{Document, Effect, LogStep, NoticeLevel, Part, Reason, Shared, UnitHint, facts};
-use crate::assess::{self, Coverage, Verdict};
+use crate::assess::Verdict;
 use crate::geometry::Similarity;
 use crate::jobs::{FurtherInput, JobKey, JobKind, PlaceInput, Stamp};
 use crate::pipeline::load::{LoadSettings, LoadedPart, usual_selection};
@@ -18,7 +18,7 @@ use crate::pipeline::map::{PoseOrigin, placing_recipe, pose_warning};
 use crate::pipeline::match_parts::MatchRun;
 use crate::pipeline::names::{file_name, told_apart};
 use crate::role::{PerRole, Role};
-use crate::text::{Lengths, counted, grouped};
+use crate::text::{counted, grouped};
 use crate::units::Units;
 
 /// What can be done about a further stamped file that has no pose.
@@ -36,21 +36,6 @@ pub struct Further {
     pub pose: FurtherPose,
     /// Its last match.
     pub placing: Option<Placing>,
-}
-
-/// What the match of a further stamped file gave.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Placing {
-    /// `crash = c · R · stamped + t`.
-    pub crash_from_stamped: Similarity,
-    /// Whether the pose can be used.
-    pub verdict: Verdict,
-    /// Distances and overlap; unknown of an older project.
-    pub coverage: Option<Coverage>,
-    /// The first reason for the verdict.
-    pub reason: Option<assess::Reason>,
-    /// The number of the crash part that it was matched with.
-    pub crash_revision: u64,
 }
 
 /// Further stamped files that are read and matched.
@@ -285,7 +270,7 @@ impl MappingState {
             return;
         }
         work.follow(FollowUp::FurtherPlaced);
-        let placing = run.map(|run| (facts::match_level(&run), placing(&run, crash_revision)));
+        let placing = run.map(|run| (facts::match_level(&run), Placing::of(&run, crash_revision)));
         let (name, lengths) = (work.document.stamped_name(&part), work.lengths());
         let further = work.document.mapping.further.iter_mut();
         let mut further = further.filter(|further| further.revision == revision);
@@ -559,27 +544,6 @@ fn wanted(document: &Document) -> Vec<Task> {
     };
     let further = document.mapping.further.iter();
     further.filter_map(|further| further.task(both)).collect()
-}
-
-fn placing(run: &MatchRun, crash_revision: u64) -> Placing {
-    Placing {
-        crash_from_stamped: run.crash_from_stamped,
-        verdict: run.assessment.verdict,
-        coverage: Some(run.assessment.coverage),
-        reason: run.assessment.reasons.first().cloned(),
-        crash_revision,
-    }
-}
-
-impl Placing {
-    /// The match in a line.
-    pub(in crate::app) fn line(&self, lengths: Lengths) -> String {
-        let verdict = self.verdict;
-        match &self.coverage {
-            Some(coverage) => facts::line_of(verdict, (coverage, self.reason.as_ref()), lengths),
-            None => verdict.label().to_owned(),
-        }
-    }
 }
 
 /// So many further stamped files went with the old crash part; `None` if it is still there. What is read for it

@@ -4,6 +4,7 @@
 mod command;
 mod further;
 mod picture;
+mod placing;
 mod probe;
 mod quantity;
 mod results;
@@ -12,8 +13,9 @@ mod stamped_rows;
 
 pub use command::MapCommand;
 pub(super) use further::{FURTHER_WITHOUT_POSE, NewFurther, further_dropped};
-pub use further::{Further, MappingState, Placing};
+pub use further::{Further, MappingState};
 pub use picture::{MapDisplay, MapPicture};
+pub use placing::Placing;
 pub use probe::ProbeReport;
 pub use quantity::Quantity;
 pub(super) use results::{take_compared, take_mapped};

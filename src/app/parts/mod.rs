@@ -6,6 +6,7 @@ mod command;
 mod files;
 pub mod filter;
 mod likeness;
+mod roles;
 mod set_units;
 mod unit_memory;
 mod units;

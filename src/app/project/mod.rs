@@ -159,16 +159,15 @@ impl AppState {
     /// What runs and would be lost if the window closed now.
     pub fn unfinished_work(&self) -> Option<&'static str> {
         let is_restoring = self.mapping.is_restoring(&self.document);
-        let runs = |key: JobKey| self.jobs.is_active(key) && !(key == JobKey::Map && is_restoring);
+        let runs = |key| self.jobs.is_active(key);
         let work = [
-            (JobKey::Match, "A match is running."),
-            (JobKey::Sweep, "A sweep is running."),
-            (JobKey::Map, "A mapping is running."),
-            (JobKey::Export, "A file is being written."),
+            (runs(JobKey::Match), "A match is running."),
+            (runs(JobKey::Sweep), "A sweep is running."),
+            (runs(JobKey::Map) && !is_restoring, "A mapping is running."),
+            (self.jobs.is_exporting(), "A file is being written."),
         ];
         work.into_iter()
-            .find(|(key, _)| runs(*key))
-            .map(|(_, words)| words)
+            .find_map(|(runs, words)| runs.then_some(words))
     }
 
     /// True if there is something new to be kept in case of a crash, and no drag is under way.

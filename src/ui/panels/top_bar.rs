@@ -174,12 +174,17 @@ fn item_ui(ui: &mut Ui, state: &AppState, row: &ActionRow, commands: &mut Vec<Co
         button = button.shortcut_text(shortcut.to_string());
     }
     let response = ui.add_enabled(enabled.is_ok(), button);
-    let response = match enabled {
+    let mut response = match enabled {
         Ok(()) => response.on_hover_text(row.tooltip),
         Err(reason) => response.on_disabled_hover_text(format!("{}\n{reason}", row.tooltip)),
     };
-    // The tick is no part of the name.
-    let response = response.accessible_name(&label);
+    if is_on.is_some() {
+        // The tick is no part of the name.
+        let keys = row
+            .shortcut()
+            .map_or_else(String::new, |keys| format!(" {keys}"));
+        response = response.accessible_name(format!("{label}{keys}"));
+    }
     if response.clicked() {
         commands.extend(action.command(state));
         ui.close();
