@@ -41,7 +41,7 @@ impl Default for GridSettings {
 ///
 /// The frame of the grid has its origin at the middle of the samples' box and their diagonal as its
 /// unit of length, so that `f32` is enough. The sample that a cell names is at most
-/// [`FeatureGrid::slack`] farther from the cell's centre than the nearest one.
+/// one and a half diagonals of a cell farther from the cell's centre than the nearest one.
 #[derive(Debug, Clone)]
 pub struct FeatureGrid {
     origin: Point3,

@@ -218,7 +218,8 @@ fn result_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
     caption(ui, "Save");
     ui.horizontal_wrapped(|ui| {
         // All five have room in one row.
-        ui.spacing_mut().button_padding.x = 4.0;
+        ui.spacing_mut().button_padding.x = 5.0;
+        ui.spacing_mut().item_spacing.x = 3.0;
         for (action, label) in [
             (Action::SaveMappedDeck, "Deck…"),
             (Action::SaveMappedPart, "Part…"),
