@@ -43,16 +43,17 @@ fn under_the_pointer_an_element_has_its_own_value() {
     for n in (0..12).cycle().take(1200) {
         window.hover_at(from + n as f32 * step);
         window.run_steps(3);
-        let mut seen = texts(&window).into_iter();
-        readout = seen.find(|text| text.text.contains("(element)"));
+        // It has several rows, each of which is a text.
+        let rows: Vec<String> = texts(&window).into_iter().map(|row| row.text).collect();
+        let first = rows.iter().position(|row| row.contains("(element)"));
+        readout = first.map(|first| rows[first..].join(" "));
         if readout.is_some() {
             break;
         }
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
-    let text = readout.expect("an element under the pointer").text;
-    // Between words a line may end or not, as there is room.
-    let text = text.replace('\u{a0}', " ");
+    let text = readout.expect("an element under the pointer");
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
     let (_, id) = text.split_once("element ").unwrap();
     let id: String = id.chars().take_while(char::is_ascii_digit).collect();
     let state = window.state().state();
