@@ -187,6 +187,16 @@ impl Window {
         window
     }
 
+    /// With the crash model and the stamped part that lie in a folder, whose jobs are done by `runner`.
+    pub fn with_files_of(folder: &Path, runner: fn(JobKind) -> Result<JobOutput, String>) -> Self {
+        let mut window = Self::new();
+        window.runner = Some(runner);
+        for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
+            window.open(folder.join(name).to_str().unwrap(), role);
+        }
+        window
+    }
+
     /// Both parts, and a match that compares its pose with no others: a bent strip, which its ends alone
     /// keep from sliding, then has a weak result.
     pub fn with_both_and_no_rivals() -> Self {

@@ -936,11 +936,7 @@ fn a_project_keeps_which_stamped_files_are_hidden() {
 fn the_match_of_a_further_file_waits_for_the_crash_part() {
     let folder = tempfile::tempdir().unwrap();
     write_bracket(folder.path(), SampleVariant::WholeModel);
-    let mut window = Window::new();
-    window.runner = Some(real);
-    for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
-        window.open(folder.path().join(name).to_str().unwrap(), role);
-    }
+    let mut window = Window::with_files_of(folder.path(), real);
     let more = folder.path().join("more.dynain");
     std::fs::copy(folder.path().join("stamped.dynain"), &more).unwrap();
     window.apply(MapCommand::AddFurther(more));

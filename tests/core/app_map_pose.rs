@@ -13,12 +13,7 @@ use super::app_mapping::{output_input, real};
 
 fn loaded(folder: &std::path::Path) -> Window {
     write_bracket(folder, SampleVariant::Plain);
-    let mut window = Window::new();
-    window.runner = Some(real);
-    for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
-        window.open(folder.join(name).to_str().unwrap(), role);
-    }
-    window
+    Window::with_files_of(folder, real)
 }
 
 /// The check of the pose, which stands first, and the warnings.

@@ -29,11 +29,7 @@ fn at_the_known_pose() -> (Window, tempfile::TempDir) {
 pub(super) fn at_the_known_pose_of(variant: SampleVariant) -> (Window, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
     let pair = write_bracket(folder.path(), variant);
-    let mut window = Window::new();
-    window.runner = Some(real);
-    for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
-        window.open(folder.path().join(name).to_str().unwrap(), role);
-    }
+    let mut window = Window::with_files_of(folder.path(), real);
     window.apply(MoveCommand::SetPose {
         crash_from_stamped: pair.crash_from_stamped,
         name: "Known pose".to_owned(),

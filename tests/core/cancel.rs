@@ -90,12 +90,7 @@ fn run(kind: &JobKind, point: Point, at: usize) -> (Result<(), JobError>, usize)
 /// A window with the bracket of both sides, whose jobs are remembered.
 fn with_brackets(folder: &Path, variant: SampleVariant) -> Window {
     write_bracket(folder, variant);
-    let mut window = Window::new();
-    window.runner = Some(remembered);
-    for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
-        window.open(folder.join(name).to_str().unwrap(), role);
-    }
-    window
+    Window::with_files_of(folder, remembered)
 }
 
 /// Jobs of a whole piece of work: read, reduce, match, measure, map.

@@ -22,11 +22,7 @@ pub fn really(kind: JobKind) -> Result<JobOutput, String> {
 fn a_match_of_a_whole_model_tries_the_most_alike_parts_alone() {
     let folder = tempfile::tempdir().unwrap();
     write_bracket(folder.path(), SampleVariant::WholeModel);
-    let mut window = Window::new();
-    window.runner = Some(really);
-    for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
-        window.open(folder.path().join(name).to_str().unwrap(), role);
-    }
+    let mut window = Window::with_files_of(folder.path(), really);
     let n_parts = window.part(Role::Crash).facts.used.len();
     assert!(n_parts > 2, "{n_parts}");
     let asked = window.state.part_question().map(|more| more.part.id);
@@ -63,11 +59,7 @@ fn without_parts(kind: JobKind) -> Result<JobOutput, String> {
 fn no_match_begins_after_a_search_for_the_part_that_was_stopped() {
     let folder = tempfile::tempdir().unwrap();
     write_bracket(folder.path(), SampleVariant::WholeModel);
-    let mut window = Window::new();
-    window.runner = Some(without_parts);
-    for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
-        window.open(folder.path().join(name).to_str().unwrap(), role);
-    }
+    let mut window = Window::with_files_of(folder.path(), without_parts);
     window.holds = true;
     window.act(Action::MatchOrStop);
     assert!(matches!(window.held[0].1, JobKind::FindParts(_)));
@@ -85,11 +77,7 @@ fn one_thread_and_sixteen_give_the_same_match_and_verdict() {
     let run = |n_threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads);
         pool.build().unwrap().install(|| {
-            let mut window = Window::new();
-            window.runner = Some(really);
-            for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
-                window.open(folder.path().join(name).to_str().unwrap(), role);
-            }
+            let mut window = Window::with_files_of(folder.path(), really);
             window.act(Action::MatchOrStop);
             let result = window.state.document.current_result().expect("a result");
             let assessment = &result.run.assessment;

@@ -223,38 +223,35 @@ const REPLACED_TEXTS: &[(&str, &str)] = &[
     ("no counterpart\"", "on this part only"),
 ];
 
+/// What is found in lines of these modules that are no comments, each with its place.
+fn found_in_code_of(modules: &[&str], find: impl Fn(&str) -> Option<String>) -> String {
+    let is_meant = |name: &str| modules.iter().any(|module| name.starts_with(module));
+    let mut found = Vec::new();
+    for (name, text) in sources().into_iter().filter(|(name, _)| is_meant(name)) {
+        let lines = text.lines().enumerate();
+        for (number, line) in lines.filter(|(_, line)| !line.trim_start().starts_with("//")) {
+            found.extend(find(line).map(|what| format!("{name}:{}: {what}", number + 1)));
+        }
+    }
+    found.join("\n")
+}
+
 #[test]
 fn window_and_report_keep_to_the_words_agreed_on() {
     let places = ["ui", "app", "report", "assess", "settings"];
-    let is_shown = |name: &str| places.iter().any(|place| name.starts_with(place));
-    let mut found = Vec::new();
-    for (name, text) in sources().into_iter().filter(|(name, _)| is_shown(name)) {
-        for (number, line) in text.lines().enumerate() {
-            let is_comment = line.trim_start().starts_with("//");
-            for (old, new) in REPLACED_TEXTS.iter().filter(|_| !is_comment) {
-                if line.contains(old) {
-                    found.push(format!("{name}:{}: {old} → {new}", number + 1));
-                }
-            }
-        }
-    }
-    assert!(found.is_empty(), "{}", found.join("\n"));
+    let found = found_in_code_of(&places, |line| {
+        let replaced = REPLACED_TEXTS.iter().find(|(old, _)| line.contains(old));
+        replaced.map(|(old, new)| format!("{old} → {new}"))
+    });
+    assert!(found.is_empty(), "{found}");
 }
 
 #[test]
 fn counts_agree_with_their_nouns() {
     let places = ["ui", "app", "report", "assess", "cli"];
-    let is_shown = |name: &str| places.iter().any(|place| name.starts_with(place));
-    let mut found = Vec::new();
-    for (name, text) in sources().into_iter().filter(|(name, _)| is_shown(name)) {
-        for (number, line) in text.lines().enumerate() {
-            let is_comment = line.trim_start().starts_with("//");
-            if !is_comment && has_fixed_plural(line) {
-                found.push(format!("{name}:{}: {}", number + 1, line.trim()));
-            }
-        }
-    }
-    let found = found.join("\n");
+    let found = found_in_code_of(&places, |line| {
+        has_fixed_plural(line).then(|| line.trim().to_owned())
+    });
     assert!(
         found.is_empty(),
         "one is no plural, so use counted:\n{found}"

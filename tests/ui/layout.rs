@@ -557,21 +557,10 @@ fn a_small_window_says_what_its_colours_mean_and_what_is_pointed_at() {
             window.run_steps(1);
         }
         window.run_steps(20);
-        let area = window
-            .get_by(|node| {
-                node.label()
-                    .is_some_and(|label| label.starts_with("Crash part, "))
-            })
-            .rect();
-        // Somewhere in the middle there is the part.
-        let step = Vec2::new(0.05 * area.width(), 0.0);
-        let from = area.center() - 6.0 * step;
-        let hovered = (0..12).map(|n| from + n as f32 * step).find(|at| {
-            window.hover_at(*at);
-            window.run_steps(3);
-            texts(&window)
-                .iter()
-                .any(|text| text.text.contains("node\u{a0}"))
+        let hovered = point_at_crash_part(&mut window, |rows| {
+            rows.iter()
+                .any(|row| row.contains("node\u{a0}"))
+                .then_some(())
         });
         assert!(hovered.is_some(), "{place}: nothing under the pointer");
         let seen: String = texts(&window).into_iter().map(|text| text.text).collect();
@@ -588,6 +577,33 @@ fn a_small_window_says_what_its_colours_mean_and_what_is_pointed_at() {
         let found = faults(&window);
         assert!(found.is_empty(), "{place}: {}", found.join("\n"));
     }
+}
+
+/// Points at places across the middle of the crash part until something is found in the texts that are painted, each
+/// row of them one. What is drawn is worked out in the background.
+pub(super) fn point_at_crash_part<T>(
+    window: &mut Window,
+    find: impl Fn(&[String]) -> Option<T>,
+) -> Option<T> {
+    let area = window
+        .get_by(|node| {
+            node.label()
+                .is_some_and(|label| label.starts_with("Crash part, "))
+        })
+        .rect();
+    let step = Vec2::new(0.05 * area.width(), 0.0);
+    let from = area.center() - 6.0 * step;
+    for n in (0..12).cycle().take(1200) {
+        window.hover_at(from + n as f32 * step);
+        window.run_steps(3);
+        let rows: Vec<String> = texts(window).into_iter().map(|row| row.text).collect();
+        let found = find(&rows);
+        if found.is_some() {
+            return found;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    None
 }
 
 /// The colours of a window are worked out in the background.

@@ -16,7 +16,7 @@ use shapematch::samples::{self, SamplePart, SampleSettings};
 use shapematch::ui::Shell;
 use shapematch::ui::theme::Palette;
 
-use super::layout::{dismiss_toasts, faults, texts};
+use super::layout::{dismiss_toasts, faults, point_at_crash_part, texts};
 use super::project::{drawn, picture};
 use super::story::{click, finish, matched, window};
 
@@ -30,28 +30,10 @@ fn under_the_pointer_an_element_has_its_own_value() {
     let mut window = matched();
     click(&mut window, "Map");
     finish(&mut window);
-    let area = window
-        .get_by(|node| {
-            node.label()
-                .is_some_and(|label| label.starts_with("Crash part, "))
-        })
-        .rect();
-    let step = egui::vec2(0.05 * area.width(), 0.0);
-    let from = area.center() - 6.0 * step;
-    let mut readout = None;
-    // What is drawn is worked out in the background.
-    for n in (0..12).cycle().take(1200) {
-        window.hover_at(from + n as f32 * step);
-        window.run_steps(3);
-        // It has several rows, each of which is a text.
-        let rows: Vec<String> = texts(&window).into_iter().map(|row| row.text).collect();
-        let first = rows.iter().position(|row| row.contains("(element)"));
-        readout = first.map(|first| rows[first..].join(" "));
-        if readout.is_some() {
-            break;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(10));
-    }
+    let readout = point_at_crash_part(&mut window, |rows| {
+        let first = rows.iter().position(|row| row.contains("(element)"))?;
+        Some(rows[first..].join(" "))
+    });
     let text = readout.expect("an element under the pointer");
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
     let (_, id) = text.split_once("element ").unwrap();
