@@ -170,6 +170,7 @@ impl Candidate {
                 .filter(|reason| Evidence::of(reason) == what)
                 .count()
         };
+        let has = |is_meant: fn(&ShapeReason) -> bool| shape.reasons.iter().any(is_meant);
         let n_clear = n_that_say(Evidence::ClearDifference);
         let borders = &shape.borders;
         Self {
@@ -181,13 +182,10 @@ impl Candidate {
             outlines_are_no_evidence: borders.other_trim.is_some() || borders.offset.is_none(),
             is_one_shape: shape.reasons.is_empty(),
             offset: shape.offset.unwrap_or(0.0),
-            outlines_lie_apart: (shape.reasons.iter())
-                .any(|reason| matches!(reason, ShapeReason::Borders { .. })),
-            surfaces_differ: (shape.reasons.iter()).any(|reason| {
-                matches!(
-                    reason,
-                    ShapeReason::Surface { .. } | ShapeReason::Local { .. }
-                )
+            outlines_lie_apart: has(|reason| matches!(reason, ShapeReason::Borders { .. })),
+            surfaces_differ: has(|reason| {
+                use ShapeReason::{Local, Surface};
+                matches!(reason, Surface { .. } | Local { .. })
             }),
             met: shape.met,
             only_overhangs: false,

@@ -31,10 +31,9 @@ pub enum Remainder {
 /// What speaks against a pose that borders and holes support, beside the one that the surfaces found: that one has
 /// surely fewer differences, or what remains besides a bend has clearly grown where it may not, or a piece of the parts
 /// lies on each other where all of them lies apart, or the surfaces differ somewhere only under the one that borders
-/// support. Springback keeps surfaces farther apart than either pose, so that
-/// their distance alone does not decide: an addendum all round that ends anywhere may pull a hood aside by 30 mm.
-/// `None` where nothing does; poses that lie within the tolerance of each other are as good. O(border edges + nodes ·
-/// log triangles).
+/// support. Springback keeps surfaces farther apart than either pose, so that their distance alone does not decide: an
+/// addendum all round that ends anywhere may pull a hood aside by 30 mm. `None` where nothing does; poses that lie
+/// within the tolerance of each other are as good. O(border edges + nodes · log triangles).
 pub fn pulled_aside(
     context: &PairContext<'_>,
     [by_surfaces, by_borders]: [&Similarity; 2],

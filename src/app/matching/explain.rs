@@ -106,7 +106,7 @@ impl AppState {
                 }),
             }];
         }
-        let units = self.units_remedy().map(|remedy| Cause {
+        let units = self.unit_remedy().map(|remedy| Cause {
             title: "Different units".to_owned(),
             evidence: "The sizes of the two files differ by a factor between units.".to_owned(),
             remedy: Some(remedy),
@@ -151,11 +151,6 @@ impl AppState {
         commands.map(|command| (label.to_owned(), vec![command]))
     }
 
-    fn units_remedy(&self) -> Option<(String, Vec<Command>)> {
-        let (label, command) = self.unit_remedy()?;
-        Some((label, vec![command]))
-    }
-
     fn parts_cause(&self, assessment: &Assessment) -> Option<Cause> {
         let Some(more) = self.more_alike() else {
             return several_parts_cause(assessment);
@@ -184,7 +179,7 @@ impl AppState {
         Some(Cause {
             title: "Different units".to_owned(),
             evidence,
-            remedy: self.units_remedy(),
+            remedy: self.unit_remedy(),
         })
     }
 
@@ -318,7 +313,6 @@ impl AppState {
     }
 }
 
-/// What is wrong where all parts of a crash model are matched together.
 /// Which part is how many times as large, from the size of the crash part over that of the stamped one.
 fn larger_part(size_ratio: f64) -> String {
     let ([larger, other], times) = if size_ratio < 1.0 {
@@ -332,6 +326,7 @@ fn larger_part(size_ratio: f64) -> String {
     )
 }
 
+/// What is wrong where all parts of a crash model are matched together.
 fn matched_as_one(n_parts: usize) -> String {
     format!("{n_parts} crash parts are matched as one")
 }

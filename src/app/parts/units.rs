@@ -160,7 +160,7 @@ impl AppState {
     }
 
     /// What makes both files agree while the hint stands: the label of its button and what it does.
-    pub fn unit_remedy(&self) -> Option<(String, Command)> {
+    pub fn unit_remedy(&self) -> Option<(String, Vec<Command>)> {
         let hint = self.unit_hint()?;
         let factor = self.hinted_length_factor()?;
         let role = Role::Stamped;
@@ -175,7 +175,7 @@ impl AppState {
                 (label, FileCommand::SetLengthFactor { role, factor })
             }
         };
-        Some((label, command.into()))
+        Some((label, vec![command.into()]))
     }
 
     /// The units of one file. While it is asked whether the stamped file is in another unit, they

@@ -73,7 +73,7 @@ fn units_menu_ui(
 
 /// The sizes or the units of the two files hint at a factor between them.
 pub fn unit_question_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let (Some(hint), Some((label, command))) = (state.unit_hint(), state.unit_remedy()) else {
+    let (Some(hint), Some((label, remedy))) = (state.unit_hint(), state.unit_remedy()) else {
         return;
     };
     card(ui, |ui| {
@@ -81,7 +81,7 @@ pub fn unit_question_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comman
         let text = RichText::new(format!("⚠ {}.", hint.text())).color(palette.check);
         ui.add(Label::new(text).wrap());
         if ui.button(label).clicked() {
-            commands.push(command);
+            commands.extend(remedy);
         }
         if ui.button("The sizes do differ").clicked() {
             commands.push(FileCommand::DismissUnitHint.into());
