@@ -167,36 +167,29 @@ fn item_ui(ui: &mut Ui, state: &AppState, row: &ActionRow, commands: &mut Vec<Co
     };
     let is_on = action.is_on(state);
     let mut button = match is_on {
-        Some(is_on) => Button::new(ticked(&label, is_on)).selected(is_on),
-        None => Button::new(label.as_str()),
+        Some(true) => Button::new(format!("{label}  ✔")),
+        _ => Button::new(label.as_str()),
     };
+    let mut name = label;
     if let Some(shortcut) = row.shortcut() {
         button = button.shortcut_text(shortcut.to_string());
+        name += &format!(" {shortcut}");
     }
-    let response = ui.add_enabled(enabled.is_ok(), button);
-    let mut response = match enabled {
+    let is_enabled = enabled.is_ok();
+    let response = ui.add_enabled(is_enabled, button);
+    if let Some(is_on) = is_on {
+        // The tick is no part of the name.
+        response.widget_info(|| {
+            egui::WidgetInfo::selected(egui::Role::Button, is_enabled, is_on, &name)
+        });
+    }
+    let response = match enabled {
         Ok(()) => response.on_hover_text(row.tooltip),
         Err(reason) => response.on_disabled_hover_text(format!("{}\n{reason}", row.tooltip)),
     };
-    if is_on.is_some() {
-        // The tick is no part of the name.
-        let keys = row
-            .shortcut()
-            .map_or_else(String::new, |keys| format!(" {keys}"));
-        response = response.accessible_name(format!("{label}{keys}"));
-    }
     if response.clicked() {
         commands.extend(action.command(state));
         ui.close();
-    }
-}
-
-/// The name of what can be on or off, with its state.
-fn ticked(label: &str, is_on: bool) -> String {
-    if is_on {
-        format!("{label}  ✔")
-    } else {
-        label.to_owned()
     }
 }
 

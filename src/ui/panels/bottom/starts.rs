@@ -230,7 +230,11 @@ fn heading_ui(ui: &mut Ui, figure: Figure, unit: &str, sorted: Option<Sorted>) {
     let text = RichText::new(format!("{title}{sign}")).small();
     let text = text.color(Palette::of(ui).secondary);
     let button = Button::new(text).frame(false).truncate();
-    let response = tight(ui, |ui| ui.add(button));
+    let response = tight(ui, |ui| {
+        // As high as the titles beside it, so that all stand on one line.
+        ui.spacing_mut().interact_size.y = 0.0;
+        ui.add(button)
+    });
     let name = format!("Sort by {title}");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
     let help = figure
