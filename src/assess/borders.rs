@@ -349,6 +349,22 @@ impl Borders {
         }
     }
 
+    /// Share of the smaller part's borders that lies beside like borders of the other at no more than this distance,
+    /// where so much is left of the distance of each pair.
+    pub(super) fn share_within(&self, left: &[f64], distance: f64) -> f64 {
+        let within = self
+            .pairs
+            .iter()
+            .zip(left)
+            .filter(|(pair, left)| pair.kind != PairKind::Mixed && left.abs() <= distance);
+        let length = within.map(|(pair, _)| pair.weight).sum::<f64>() / self.edge;
+        if self.length > 0.0 {
+            length / self.length
+        } else {
+            0.0
+        }
+    }
+
     /// Length of the borders of holes where the other part is solid, as a share of all borders of the smaller
     /// part.
     pub(crate) fn missing_share(&self) -> f64 {

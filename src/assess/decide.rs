@@ -10,8 +10,8 @@ use super::assessment::Assessment;
 use super::borders::HOLES_THAT_HOLD;
 use super::pose::{PoseKind, PoseStatement};
 use super::reason::Reason;
-use super::shape::{ShapeStatement, only_overhangs};
-use super::tolerance::{AssessSettings, UNREMARKABLE};
+use super::shape::{BorderFit, ShapeStatement, only_overhangs};
+use super::tolerance::{AssessSettings, ShapeTolerance, UNREMARKABLE};
 use super::verdict::Verdict;
 use crate::registration::starts::StartKind;
 use crate::registration::{MatchOutcome, MirrorCheck, Termination};
@@ -28,6 +28,8 @@ pub(super) const NEAR_MIRROR: f64 = 0.98;
 const SEVERAL_FROM: f64 = 2.0;
 /// … and larger than that no whole car is beside one of its parts.
 const SEVERAL_TO: f64 = 500.0;
+/// Borders hold a part whose surface can slide if at least this share of the smaller part's lies on one of the other.
+const LEAST_TOGETHER: f64 = 1.0 / 3.0;
 /// Parts whose sizes differ by more than this factor are not in one unit, whatever the units are.
 const FAR_APART: f64 = 50.0;
 
@@ -237,11 +239,16 @@ fn sliding(
     let was_searched = outcome.rivals_sought && motion.kind.is_searched();
     let is_clear = was_searched && assessment.ambiguity.clarity == Clarity::Clear;
     let borders = &shape.borders;
-    let borders_fit = borders
-        .offset
-        .is_some_and(|apart| apart <= shape.tolerance.remainder);
-    let is_held = is_firm && (borders.n_holes >= HOLES_THAT_HOLD || is_clear && borders_fit);
+    let borders_hold = is_clear && borders_lie_together(borders, &shape.tolerance);
+    let is_held = is_firm && (borders.n_holes >= HOLES_THAT_HOLD || borders_hold);
     (!is_held).then_some(Reason::Sliding { motion })
+}
+
+/// Whether borders that lie beside each other do so where they belong, and enough of them: along a free motion some
+/// place can always be found where one trimmed edge lies beside another.
+fn borders_lie_together(borders: &BorderFit, tolerance: &ShapeTolerance) -> bool {
+    let is_within = |apart| apart <= tolerance.remainder;
+    borders.offset.is_some_and(is_within) && borders.together >= LEAST_TOGETHER
 }
 
 fn uncertainty(assessment: &Assessment) -> Option<Reason> {
@@ -298,7 +305,7 @@ fn ending(outcome: &MatchOutcome) -> Option<Reason> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::assess::{ShapeReason, ShapeTolerance};
+    use crate::assess::ShapeReason;
     use crate::geometry::Point3;
 
     fn shape(remainder: f64, reasons: &[ShapeReason]) -> ShapeStatement {
@@ -311,6 +318,23 @@ mod tests {
             reasons: reasons.to_vec(),
             ..ShapeStatement::nothing_met(tolerance)
         }
+    }
+
+    #[test]
+    fn borders_of_which_few_lie_together_hold_no_part_that_slides() {
+        let tolerance = shape(0.1, &[]).tolerance;
+        let holds = |offset, together| {
+            let borders = BorderFit {
+                offset,
+                together,
+                ..BorderFit::default()
+            };
+            borders_lie_together(&borders, &tolerance)
+        };
+        assert!(holds(Some(0.7), 0.4));
+        // Edges that were trimmed lie beside each other by chance, but hardly along a third of the outline.
+        assert!(!holds(Some(0.9), 0.3));
+        assert!(!holds(Some(1.1), 0.9) && !holds(None, 0.9));
     }
 
     #[test]

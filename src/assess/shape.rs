@@ -36,6 +36,8 @@ const SAME_SHARE: f64 = 0.8;
 const SURELY: f64 = 3.0;
 /// Fewer holes determine neither their mean nor how much they scatter.
 const LEAST_HOLES: usize = 4;
+/// Borders lie together up to this share of how far they may lie apart.
+const TOGETHER: f64 = 0.5;
 /// Patches that are searched for the place of the largest difference: 2 to this power.
 const PLACE_LEVELS: u32 = 5;
 
@@ -59,6 +61,9 @@ pub struct BorderFit {
     /// Distance across the border that 90 % of the borders beside each other do not exceed, without what
     /// springback and an error of the pose explain; `None` where too few borders lie beside each other.
     pub offset: Option<f64>,
+    /// Share of the smaller part's borders that lies on a border of the other: within half of what is accepted.
+    #[serde(default)]
+    pub together: f64,
     /// Where one part was trimmed farther out than the other: how far outlines lie apart, at 90 % of those that
     /// do. They are no evidence, neither of the pose nor of the shape.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -368,6 +373,7 @@ impl ShapeStatement {
 fn border_fit(borders: &Borders, fit: &Fit, tolerance: &ShapeTolerance) -> BorderFit {
     BorderFit {
         offset: (borders.share() >= LEAST_PAIRED).then(|| borders.distance_of_most(&fit.borders)),
+        together: borders.share_within(&fit.borders, TOGETHER * borders.limit(tolerance)),
         other_trim: None,
         apart: trims::farthest_apart(borders, &fit.borders, borders.limit(tolerance)),
         n_holes: borders.holes.len(),

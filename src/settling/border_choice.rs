@@ -55,6 +55,11 @@ const MORE_HELD: f64 = 0.005;
 const BY_CHANCE: f64 = 0.15;
 /// So much less of the borders where they belong makes a pose count as twice as bad.
 const TWICE_AS_BAD: f64 = 0.05;
+/// Where less than this share of the result's own borders beside like ones lies where it belongs, the parts were trimmed
+/// differently, …
+const TRIMMED_ALIKE: f64 = 0.8;
+/// … and a pose under which at least this share of all borders does is as likely by its outlines.
+const HELD_BY_OTHERS: f64 = 0.4;
 /// Distances of surfaces up to this share of the tolerance are negligible.
 const NO_GAP: f64 = 0.1;
 /// Borders of which so much lies where it belongs support a pose.
@@ -218,6 +223,13 @@ struct PoseComparison<'a> {
     finely: Refinement<'a>,
 }
 
+/// Shares of the smaller part's borders under a pose; [`Refined`] says of what.
+struct BordersHeld {
+    held: f64,
+    alike: f64,
+    grain: f64,
+}
+
 /// A pose that was refined, and how well it fits.
 #[derive(Clone, Copy)]
 struct Refined {
@@ -227,6 +239,8 @@ struct Refined {
     held: f64,
     /// Share of them that lies beside a border of the other part.
     paired: f64,
+    /// Share of them that lies beside a like one: an outline beside an outline, a hole beside a hole.
+    alike: f64,
     /// Share of the borders that one place of them stands for: `held` is no finer.
     grain: f64,
     /// Holes with a counterpart, and how far the one that lies farthest from it is off.
@@ -273,6 +287,17 @@ impl Refined {
             most = most.max(ROUGHLY * springback);
         }
         self.met >= AS_MUCH * other.met && self.gap <= most
+    }
+
+    /// Whether the outlines do not distinguish this pose from the winner: they lie apart in places under the winner too,
+    /// where the parts were trimmed differently, enough of the borders hold this pose, and the holes do as under the
+    /// winner.
+    fn is_held_as_well(&self, winner: &Self, within: f64) -> bool {
+        let has_its_holes = self.n_holes >= winner.n_holes
+            && self.worst_hole <= within.max(winner.worst_hole)
+            && self.missing <= winner.missing + self.grain;
+        let are_trimmed_alike = winner.held >= TRIMMED_ALIKE * winner.alike;
+        !are_trimmed_alike && self.held >= HELD_BY_OTHERS && has_its_holes
     }
 
     /// Whether more holes have their counterpart than under the other pose, at no cost: as much of the part
@@ -379,11 +404,12 @@ impl<'a> PoseComparison<'a> {
     fn measured(&self, pose: Similarity) -> Option<Refined> {
         let meeting = self.meeting(&pose)?;
         let borders = self.borders.at(&pose);
-        let (held, grain) = self.borders_held(&borders);
+        let BordersHeld { held, alike, grain } = self.borders_held(&borders);
         Some(Refined {
             pose,
             held,
             paired: borders.share().min(1.0),
+            alike,
             grain,
             n_holes: borders.holes.len(),
             worst_hole: borders.worst_hole(),
@@ -445,17 +471,17 @@ impl<'a> PoseComparison<'a> {
         roots
     }
 
-    /// Share of the smaller part's borders that lies within the tolerance of a like border of the other part, less
-    /// for what lies farther from it; holes where the other part is solid count against the pose. With it the
-    /// share that a single place of the borders stands for.
-    fn borders_held(&self, borders: &Borders) -> (f64, f64) {
+    /// What of the smaller part's borders lies within the tolerance of a like border of the other part, less for what
+    /// lies farther from it; holes where the other part is solid count against the pose.
+    fn borders_held(&self, borders: &Borders) -> BordersHeld {
         let within = HELD_WITHIN * (self.remainder() + borders.unremarkable());
-        let (mut held, mut paired, mut largest) = (0.0, 0.0, 0.0_f64);
+        let (mut held, mut alike, mut paired, mut largest) = (0.0, 0.0, 0.0, 0.0_f64);
         for pair in borders.pairs() {
             largest = largest.max(pair.weight);
             let ratio = pair.gap / within;
             if pair.kind != PairKind::Mixed {
                 held += pair.weight * (1.0 - ratio * ratio).max(0.0);
+                alike += pair.weight;
             }
             paired += pair.weight;
         }
@@ -464,7 +490,11 @@ impl<'a> PoseComparison<'a> {
         } else {
             0.0
         };
-        (of_all * held - borders.missing_share(), of_all * largest)
+        BordersHeld {
+            held: of_all * held - borders.missing_share(),
+            alike: of_all * alike,
+            grain: of_all * largest,
+        }
     }
 
     /// Of poses whose surfaces lie farther apart than those of the winner the one under which the most holes have their
@@ -508,7 +538,11 @@ impl<'a> PoseComparison<'a> {
                 return *other;
             };
             let grain = pose.grain.max(winner.grain);
-            let by_borders = ratio_by_borders(apart(pose.behind(winner), grain));
+            let by_borders = if pose.is_held_as_well(winner, self.remainder()) {
+                1.0
+            } else {
+                ratio_by_borders(apart(pose.behind(winner), grain))
+            };
             let by_holes = if winner.has_more_holes_than(&pose, self.remainder()) {
                 FEWER_HOLES
             } else {

@@ -17,12 +17,10 @@ const MOST: usize = 3;
 /// Less overlap of the better covered part is little.
 const LITTLE_OVERLAP: f64 = 0.6;
 
-const OTHER_HAND: &str = "Opposite-hand part";
-
 /// A likely cause of a weak or failed match.
 #[derive(Debug, Clone)]
 pub struct Cause {
-    /// The cause as a question.
+    /// The cause in a few words.
     pub title: String,
     /// The evidence for it, as a sentence.
     pub evidence: String,
@@ -40,11 +38,7 @@ impl AppState {
         if assessment.verdict == Verdict::Good {
             return Vec::new();
         }
-        // Sizes and overlap of several parts say nothing about the one that is stamped; parts in
-        // different units lie nowhere on each other.
-        let of_parts = self.parts_cause(assessment);
-        let first = of_parts.or_else(|| self.units_cause(assessment));
-        if let Some(only) = first {
+        if let Some(only) = self.only_cause(assessment) {
             return vec![only];
         }
         let found = [
@@ -58,16 +52,26 @@ impl AppState {
         found.into_iter().flatten().take(MOST).collect()
     }
 
+    /// The cause beside which nothing else that was found means anything: sizes and overlap of several parts say nothing
+    /// about the one that is stamped, and parts in different units lie nowhere on each other.
+    fn only_cause(&self, assessment: &Assessment) -> Option<Cause> {
+        let of_parts = self.parts_cause(assessment);
+        of_parts.or_else(|| self.units_cause(assessment))
+    }
+
     /// True where the part of the other hand fits better and can be matched: that comes before all else.
     pub fn is_other_hand_better(&self) -> bool {
         let result = self.document.current_result();
-        let is_better = result.is_some_and(|result| {
-            let mut reasons = result.run.assessment.reasons.iter();
-            reasons.any(|reason| matches!(reason, Reason::OppositeHand { .. }))
-        });
-        let causes = if is_better { self.causes() } else { Vec::new() };
-        let first = causes.first();
-        first.is_some_and(|cause| cause.title == OTHER_HAND && cause.remedy.is_some())
+        result.is_some_and(|result| {
+            let assessment = &result.run.assessment;
+            let mut reasons = assessment.reasons.iter();
+            let is_better = reasons.any(|reason| matches!(reason, Reason::OppositeHand { .. }));
+            let can_match = || {
+                let cause = self.hand_cause(assessment);
+                cause.is_some_and(|cause| cause.remedy.is_some())
+            };
+            is_better && self.only_cause(assessment).is_none() && can_match()
+        })
     }
 
     /// True while it is asked whether the parts are in different units and the match says so too: then
@@ -197,7 +201,7 @@ impl AppState {
         })?;
         let hand = self.document.recipe.settings.hand;
         Some(Cause {
-            title: OTHER_HAND.to_owned(),
+            title: "Opposite-hand part".to_owned(),
             evidence: format!("The other hand fits better: {fit}."),
             remedy: self.retry("Match the opposite hand", |recipe| {
                 recipe.settings.hand = match hand {

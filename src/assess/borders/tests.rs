@@ -132,3 +132,15 @@ fn holes_on_different_sides_are_missing_both_ways() {
     assert!(borders.holes.is_empty());
     assert_eq!(borders.missing.each_ref().map(Vec::len), [1, 1]);
 }
+
+#[test]
+fn the_share_of_borders_that_lie_together_leaves_out_those_aside() {
+    let (plain, longer) = (sheet(30, 5), sheet(32, 5));
+    let borders = compared(&plain, &longer);
+    let left: Vec<f64> = borders.pairs.iter().map(|p| p.gap).collect();
+    // One of the short ends, 20 of 116 mm, lies two millimetres aside.
+    let together = borders.share_within(&left, 0.5);
+    assert!((together - 96.0 / 116.0).abs() < 0.03, "{together}");
+    assert!((borders.share_within(&left, 3.0) - borders.share()).abs() < 1e-9);
+    assert_eq!(Borders::default().share_within(&[], 1.0), 0.0);
+}

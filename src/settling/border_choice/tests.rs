@@ -12,6 +12,7 @@ fn refined(held: f64, paired: f64, n_holes: usize) -> Refined {
         pose: Similarity::identity(),
         held,
         paired,
+        alike: paired,
         grain: 0.002,
         n_holes,
         worst_hole: 0.0,
@@ -54,4 +55,26 @@ fn borders_beyond_the_other_part_count_only_where_one_part_covers_the_other() {
         ..overhanging(shifted)
     };
     assert!((apart.behind(&overhanging(winner)) - 0.5).abs() < 1e-12);
+}
+
+#[test]
+fn outlines_that_lie_apart_under_the_winner_too_do_not_distinguish_a_pose() {
+    let within = 1.0;
+    let (winner, other) = (refined(0.57, 0.8, 1), refined(0.44, 0.81, 1));
+    assert!(other.is_held_as_well(&winner, within));
+    // All outlines of the winner lie together, hardly any of the other's do, or a hole has no counterpart.
+    assert!(!other.is_held_as_well(&refined(0.78, 0.8, 1), within));
+    assert!(!refined(0.2, 0.81, 1).is_held_as_well(&winner, within));
+    assert!(!refined(0.44, 0.81, 0).is_held_as_well(&winner, within));
+    // A cut through a hole lies beside no like border, however the parts were trimmed.
+    let cut_through = Refined {
+        alike: 0.6,
+        ..winner
+    };
+    assert!(!other.is_held_as_well(&cut_through, within));
+    let aside = Refined {
+        worst_hole: 1.2,
+        ..other
+    };
+    assert!(!aside.is_held_as_well(&winner, within));
 }
