@@ -292,7 +292,7 @@ impl Viewports {
                 instance,
             });
         let layers = layers.collect();
-        let mut picture = Picture::new(state, view, look, layers, ui.pixels_per_point());
+        let mut picture = Picture::new(state, view, look, layers, density(ui.ctx()));
         picture.cut(state, look, &cuts);
         picture
     }
@@ -388,10 +388,34 @@ impl Viewports {
     }
 }
 
+/// Pixels per point of the screen alone: lines and points in the picture do not grow with the text.
+fn density(ctx: &egui::Context) -> f32 {
+    ctx.pixels_per_point() / ctx.zoom_factor()
+}
+
 /// True if the window should show something and nothing of it is ready.
 fn is_preparing(state: &AppState, view: &ViewFrame, picture: &Picture) -> bool {
     picture.is_empty()
         && visible_parts::visible_parts(state, view)
             .iter()
             .any(|instance| state.document.part(instance.role).is_some())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_do_not_grow_with_the_text() {
+        let ctx = egui::Context::default();
+        for scale in [1.0, 2.5] {
+            ctx.set_zoom_factor(scale);
+            let mut input = egui::RawInput::default();
+            let screen = input.viewports.get_mut(&egui::ViewportId::ROOT);
+            screen.expect("the window").native_pixels_per_point = Some(1.5);
+            let mut found = 0.0;
+            let _ = ctx.run_ui(input, |ui| found = density(ui.ctx()));
+            assert!((found - 1.5).abs() < 1e-6, "{found} at {scale}");
+        }
+    }
 }
