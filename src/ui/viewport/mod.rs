@@ -287,7 +287,8 @@ impl Viewports {
             .map(|((mesh, instance), field)| Layer {
                 role: instance.role,
                 mesh,
-                field,
+                // A ghost has none.
+                field: field.filter(|_| !instance.is_ghost),
                 wants_field: fields::is_wanted(state, view.window, &instance),
                 instance,
             });
