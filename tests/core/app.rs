@@ -2069,6 +2069,37 @@ fn the_picture_stays_where_it_is_when_another_map_has_another_legend() {
 }
 
 #[test]
+fn unused_parts_are_shown_on_request_and_change_nothing_but_the_picture() {
+    let mut window = Window::new();
+    window.open("car.k", Role::Crash);
+    assert!(
+        Action::ToggleUnused.enabled(&window.state).is_err(),
+        "all are used"
+    );
+    let part = PartRef {
+        role: Role::Crash,
+        id: 22,
+    };
+    window.apply(PartCommand::UseOnly(part));
+    let unused: Vec<u64> = window.part(Role::Crash).unused().collect();
+    assert_eq!(unused, [21, 23]);
+    assert_eq!(Action::ToggleUnused.is_on(&window.state), Some(false));
+    let seen = |window: &Window| {
+        let n_done = window.state.history.n_done();
+        let bounds = window.state.visible_bounds(Role::Crash);
+        (window.state.document.clone(), n_done, bounds)
+    };
+    let before = seen(&window);
+    let camera = window.state.view.cameras.crash;
+    window.act(Action::ToggleUnused);
+    assert_eq!(Action::ToggleUnused.is_on(&window.state), Some(true));
+    window.apply(ViewCommand::FitAll(Role::Crash));
+    assert!(seen(&window) == before && window.state.view.cameras.crash == camera);
+    window.act(Action::ToggleUnused);
+    assert_eq!(Action::ToggleUnused.is_on(&window.state), Some(false));
+}
+
+#[test]
 fn a_step_back_to_a_part_elsewhere_takes_the_camera_there() {
     let folder = tempfile::tempdir().unwrap();
     write_bracket(folder.path(), SampleVariant::Plain);

@@ -19,6 +19,7 @@ mod sections;
 mod shape;
 mod snapshot;
 mod tools;
+mod unused;
 mod visible_parts;
 mod window;
 
@@ -42,12 +43,14 @@ use picture::{Layer, Picture};
 use sections::SectionStore;
 pub use shape::read_points;
 use snapshot::LastFrame;
+use unused::UnusedStore;
 use window::{Following, Window};
 
 /// The 3D windows with everything they remember between frames.
 pub struct Viewports {
     render_state: Option<RenderState>,
     meshes: MeshStore,
+    unused: UnusedStore,
     fields: FieldStore,
     sections: SectionStore,
     crossing: Crossing,
@@ -65,9 +68,11 @@ impl Viewports {
         if let Some(render_state) = render_state {
             Gpu::install(render_state);
         }
+        let is_on_processor = render_state.is_some_and(gpu::is_software);
         Self {
             render_state: render_state.cloned(),
-            meshes: MeshStore::new(render_state.is_some_and(gpu::is_software)),
+            meshes: MeshStore::new(is_on_processor),
+            unused: UnusedStore::new(is_on_processor),
             fields: FieldStore::new(),
             sections: SectionStore::new(),
             crossing: Crossing::default(),
@@ -159,7 +164,8 @@ impl Viewports {
     /// True while meshes or colours are being made that a window wants to show. For tests and
     /// pictures that must not be taken too early.
     pub fn is_waiting(&self) -> bool {
-        self.meshes.is_waiting() || self.fields.is_waiting() || self.sections.is_waiting()
+        let is_waiting = self.meshes.is_waiting() || self.unused.is_waiting();
+        is_waiting || self.fields.is_waiting() || self.sections.is_waiting()
     }
 
     /// True if a picture that was drawn since the last call is not the exact one, of which large parts have
@@ -247,7 +253,9 @@ impl Viewports {
 
     /// The window's scene, from the meshes that are ready.
     fn picture_of(&mut self, ui: &Ui, view: &ViewFrame, state: &AppState, look: &Look) -> Picture {
-        let instances: Vec<_> = visible_parts::visible_parts(state, view)
+        let shown = visible_parts::visible_parts(state, view);
+        let unused = self.unused.drawables((state, view), look, &shown, ui.ctx());
+        let instances: Vec<_> = shown
             .into_iter()
             .filter_map(|instance| Some((instance.source(state)?, instance)))
             .collect();
@@ -295,6 +303,7 @@ impl Viewports {
         let layers = layers.collect();
         let mut picture = Picture::new(state, view, look, layers, density(ui.ctx()));
         picture.cut(state, look, &cuts);
+        picture.add(unused);
         picture
     }
 

@@ -11,7 +11,7 @@ use crate::ui::theme::Look;
 /// Opacity of the crash part when one sees through it.
 const SEE_THROUGH: f32 = 0.2;
 /// Opacity of a part without colours of its own before or behind one that shows the deviation.
-const GHOST: f32 = 0.15;
+pub(super) const GHOST: f32 = 0.15;
 /// Opacity of the stamped part while something else than its real pose is shown.
 const PREVIEW: f32 = 0.62;
 
