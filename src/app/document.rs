@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::{Label, Mapping, PointPairs, Shared};
 use crate::assess::Verdict;
+use crate::formats::PartSummary;
 use crate::formats::model::ReadFile;
 use crate::geometry::{Aabb, Similarity, TriMesh};
 use crate::jobs::{MeasuredLevel, PartFacts, PartSource, Stamp};
@@ -129,6 +130,18 @@ impl Part {
     /// True if this part of the deck is matched.
     pub fn is_used(&self, id: u64) -> bool {
         self.facts.used.contains(&id)
+    }
+
+    /// The parts of the deck with elements that are not matched.
+    pub fn unused(&self) -> impl Iterator<Item = u64> {
+        let has_elements = |part: &&PartSummary| part.n_shells + part.n_solids > 0;
+        let parts = self.facts.parts.iter().filter(has_elements);
+        parts.map(|part| part.id).filter(|id| !self.is_used(*id))
+    }
+
+    /// True if the deck holds more than is matched.
+    pub fn has_unused(&self) -> bool {
+        self.unused().next().is_some()
     }
 
     /// The factor its coordinates were multiplied by at loading.

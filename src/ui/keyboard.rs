@@ -62,6 +62,10 @@ pub struct Keyboard {
     events: Vec<(Event, bool)>,
     /// The keys of the frame that are still to act, in their order.
     keys: VecDeque<Event>,
+    /// How many of them came before the end of the last click or key that presses a button.
+    n_before_press: usize,
+    /// A button closed what lay over the window, and so many keys came before that.
+    n_covered: Option<usize>,
     /// What follows the last command.
     then: Option<Command>,
 }
@@ -87,6 +91,7 @@ impl Keyboard {
         self.owner = self.owner(ctx, has_question);
         self.had_dialog = state.view.dialog.is_some();
         self.keys.clear();
+        self.n_covered = None;
         let is_moving = self.is_moving(state);
         let is_typing = self.was_typing || ctx.text_edit_focused();
         ctx.input_mut(|input| {
@@ -127,16 +132,29 @@ impl Keyboard {
     /// order in which they came.
     pub fn collect(&mut self, ctx: &egui::Context) {
         self.was_typing = ctx.text_edit_focused();
+        self.n_before_press = 0;
         ctx.input(|input| {
             self.held = input.modifiers;
             let mut left = input.events.iter().peekable();
             for (event, is_taken) in self.events.drain(..) {
+                let is_press = presses(&event);
                 if is_taken || left.next_if_eq(&&event).is_some() {
                     self.keys.push_back(event);
+                }
+                if is_press {
+                    self.n_before_press = self.keys.len();
                 }
             }
             self.keys.extend(left.cloned());
         });
+    }
+
+    /// What the panels asked for is done: where a button closed the dialog or question over the window, the keys that
+    /// came after that are the window's.
+    pub fn uncover(&mut self, state: &AppState, has_question: bool) {
+        let was_covered = self.had_dialog || self.owner == KeyOwner::Question;
+        let is_covered = state.view.dialog.is_some() || has_question;
+        self.n_covered = (was_covered && !is_covered).then_some(self.n_before_press);
     }
 
     /// The command of the next key that has one. It is applied before the one after it is asked for: a slow frame
@@ -146,6 +164,14 @@ impl Keyboard {
             return Some(command);
         }
         while let Some(event) = self.keys.pop_front() {
+            match &mut self.n_covered {
+                Some(0) => {
+                    self.had_dialog = false;
+                    self.owner = KeyOwner::Window;
+                }
+                Some(n_covered) => *n_covered -= 1,
+                None => {}
+            }
             if self.is_moving(state)
                 && let Some(input) = modal_input(&event)
             {
@@ -219,6 +245,17 @@ fn of_event(
             Some((why, open))
         }
         _ => action.command(state).map(alone),
+    }
+}
+
+/// True for the end of a click and for the keys that press the button with the keyboard.
+fn presses(event: &Event) -> bool {
+    match event {
+        Event::PointerButton { pressed, .. } => !pressed,
+        Event::Key { key, pressed, .. } => {
+            *pressed && matches!(key, egui::Key::Enter | egui::Key::Space)
+        }
+        _ => false,
     }
 }
 

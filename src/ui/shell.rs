@@ -523,6 +523,7 @@ impl eframe::App for Shell {
             self.run_commands(commands, &ctx);
             ctx.request_repaint();
         }
+        self.keyboard.uncover(&self.state, self.dialogs.is_open());
         self.press_keys(&ctx);
         self.update_rest();
         if let Some(expiry) = self.state.log.notices.next_expiry() {

@@ -7,7 +7,7 @@ use std::time::Duration;
 use shapematch::app::*;
 use shapematch::assess::PoseKind;
 use shapematch::formats::{Diagnostic, DiagnosticKind, Model};
-use shapematch::geometry::camera::StandardView;
+use shapematch::geometry::camera::{Covered, StandardView};
 use shapematch::geometry::{Point3, Similarity, TriMesh, Vector3};
 use shapematch::jobs::*;
 use shapematch::monitor::Monitor;
@@ -2028,6 +2028,75 @@ fn a_view_of_the_whole_part_stays_one_from_every_side() {
         !look(&mut window, close),
         "what was brought closer stays so"
     );
+}
+
+#[test]
+fn the_picture_stays_where_it_is_when_another_map_has_another_legend() {
+    let mut window = Window::with_both();
+    let role = Role::Crash;
+    let room = |aspect: f64, beside: f64, above: f64| {
+        let covered = Covered {
+            beside: [0.0, beside],
+            above,
+            ..Covered::default()
+        };
+        ViewCommand::SetRoom(role, ViewRoom { aspect, covered })
+    };
+    let seen = |window: &mut Window, room: ViewCommand| {
+        window.apply(room);
+        assert!(window.state.view.is_fitted(role));
+        *window.state.view.cameras.get(role)
+    };
+    let (none, slim, wide) = ([0.0, 0.0], [0.16, 0.6], [0.4, 0.7]);
+    let bare = seen(&mut window, room(1.0, none[0], none[1]));
+    let first = seen(&mut window, room(1.0, wide[0], wide[1]));
+    assert_ne!(first, bare, "the legend covers nothing of the part");
+    for [beside, above] in [slim, none, wide, slim] {
+        assert_eq!(seen(&mut window, room(1.0, beside, above)), first);
+    }
+    // From another side too.
+    window.apply(ViewCommand::Standard(role, StandardView::Front));
+    let front = *window.state.view.cameras.get(role);
+    assert_eq!(seen(&mut window, room(1.0, wide[0], wide[1])), front);
+    // What is fitted on request, and a window of another shape, fill the room that there is.
+    window.apply(room(1.0, none[0], none[1]));
+    window.apply(ViewCommand::FitAll(role));
+    assert!(window.state.view.cameras.get(role).height < front.height);
+    window.apply(room(1.0, wide[0], wide[1]));
+    let other_shape = seen(&mut window, room(1.5, slim[0], slim[1]));
+    window.apply(ViewCommand::FitAll(role));
+    assert_eq!(*window.state.view.cameras.get(role), other_shape);
+}
+
+#[test]
+fn unused_parts_are_shown_on_request_and_change_nothing_but_the_picture() {
+    let mut window = Window::new();
+    window.open("car.k", Role::Crash);
+    assert!(
+        Action::ToggleUnused.enabled(&window.state).is_err(),
+        "all are used"
+    );
+    let part = PartRef {
+        role: Role::Crash,
+        id: 22,
+    };
+    window.apply(PartCommand::UseOnly(part));
+    let unused: Vec<u64> = window.part(Role::Crash).unused().collect();
+    assert_eq!(unused, [21, 23]);
+    assert_eq!(Action::ToggleUnused.is_on(&window.state), Some(false));
+    let seen = |window: &Window| {
+        let n_done = window.state.history.n_done();
+        let bounds = window.state.visible_bounds(Role::Crash);
+        (window.state.document.clone(), n_done, bounds)
+    };
+    let before = seen(&window);
+    let camera = window.state.view.cameras.crash;
+    window.act(Action::ToggleUnused);
+    assert_eq!(Action::ToggleUnused.is_on(&window.state), Some(true));
+    window.apply(ViewCommand::FitAll(Role::Crash));
+    assert!(seen(&window) == before && window.state.view.cameras.crash == camera);
+    window.act(Action::ToggleUnused);
+    assert_eq!(Action::ToggleUnused.is_on(&window.state), Some(false));
 }
 
 #[test]

@@ -275,7 +275,7 @@ fn pictures_of_a_mapping_are_chosen_and_say_what_the_values_say() {
 }
 
 #[test]
-fn a_probe_tells_both_sides_of_an_element_and_is_one_step() {
+fn a_probe_tells_both_sides_of_an_element_and_is_no_step() {
     let (mut window, _folder) = mapped_in_full();
     let result = window.state.document.current_mapping().unwrap();
     let run = result.run.to_arc();
@@ -295,7 +295,10 @@ fn a_probe_tells_both_sides_of_an_element_and_is_one_step() {
     assert_eq!(of_found.element, partner.element);
 
     assert!(window.state.probe().is_none());
+    let before = (document.clone(), window.state.history.n_done());
     window.apply(MapCommand::Probe(Some(element)));
+    let after = (window.state.document.clone(), window.state.history.n_done());
+    assert!(before == after, "looking is no step");
     let probe = window.state.probe().unwrap();
     assert_eq!((probe.id, probe.stamped_id), (id, Some(stamped_id)));
     let of = |by: ColorBy| probe.values.iter().find(|row| row.0 == by).unwrap().1;
@@ -313,13 +316,19 @@ fn a_probe_tells_both_sides_of_an_element_and_is_one_step() {
         assert!((value - expected).abs() < 1e-15);
     }
     assert_eq!(probe.profile.stamped.len(), 2);
-    // Undo ends the probe, another mapping of the same elements keeps it.
+    // Every mapping of the same elements keeps it, and what was undone can be brought back after it.
     window.act(Action::MapOrCancel);
     assert!(window.state.probe().is_some());
     window.apply(HistoryCommand::Undo);
+    assert!(window.state.probe().is_some());
+    window.apply(MapCommand::Probe(Some(element + 1)));
+    assert_eq!(window.state.history.n_undone(), 1);
+    assert_eq!(window.state.probe().unwrap().element, element + 1);
     window.apply(HistoryCommand::Undo);
-    assert!(window.state.probe().is_none());
+    assert!(window.state.probe().is_none(), "of no mapping");
     window.apply(HistoryCommand::Redo);
+    window.apply(HistoryCommand::Redo);
+    assert_eq!(window.state.probe().unwrap().element, element + 1);
     window.act(Action::EndProbe);
     assert!(window.state.probe().is_none());
     assert!(Action::EndProbe.enabled(&window.state).is_err());

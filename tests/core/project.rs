@@ -70,6 +70,9 @@ fn worked(crash: &Path, stamped: &Path) -> Window {
     window.apply(PartCommand::SetVisible(part, false));
     window.apply(MatchCommand::Run);
     window.apply(ViewCommand::ToggleMoveOver);
+    let mut display = window.state.view.display.clone();
+    display.has_unused = true;
+    window.apply(ViewCommand::SetDisplay(Box::new(display)));
     assert!(window.state.document.current_result().is_some());
     window
 }

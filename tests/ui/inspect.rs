@@ -10,7 +10,9 @@ use shapematch::app::{
 };
 use shapematch::geometry::Vector3;
 use shapematch::role::Role;
+use shapematch::ui::Shell;
 
+use super::layout::texts;
 use super::story::{click, finish, matched};
 use super::viewport::{Desk, area, drag, harness, settle, show};
 
@@ -336,4 +338,78 @@ fn after_a_match_the_tab_tells_the_numbers_and_goes_to_the_worst_places() {
     window.run_steps(3);
     assert!(window.state().state().inspect.section.is_on);
     window.check_accessibility();
+}
+
+/// Each drawing of the section, in its tab and in the free window, has a view of its own, which stays while another
+/// tab is shown.
+#[test]
+fn the_drawing_of_the_section_keeps_its_view() {
+    let mut window = matched();
+    // The free window is higher than wide, the tab is not.
+    window.set_size(vec2(1300.0, 1100.0));
+    window.run_steps(3);
+    click(&mut window, "Move over");
+    finish(&mut window);
+    let run = |window: &mut Harness<'static, Shell>, command: ViewCommand| {
+        let ctx = window.ctx.clone();
+        window.state_mut().run_commands(vec![command.into()], &ctx);
+        window.run_steps(5);
+    };
+    window.key_press(egui::Key::S);
+    window.run_steps(3);
+    run(&mut window, ViewCommand::SetTab(BottomTab::Section));
+    let is_drawn = |window: &Harness<'static, Shell>| {
+        let texts = texts(window).into_iter();
+        texts
+            .filter(|text| text.text.starts_with("Widest gap"))
+            .count()
+            == 2
+    };
+    let begin = std::time::Instant::now();
+    while !is_drawn(&window) {
+        assert!(begin.elapsed().as_secs() < 120, "no outlines");
+        std::thread::sleep(std::time::Duration::from_millis(10));
+        window.run_steps(1);
+    }
+    window.run_steps(5);
+    // Its axes have the letters of the coordinates.
+    let is_canvas = |label: Option<String>| {
+        let name = "Outlines in the section plane, ";
+        label.is_some_and(|label| label.starts_with(name) && label.ends_with(" upwards"))
+    };
+    let canvases = window.query_all_by(|node| is_canvas(node.label()));
+    let mut canvases: Vec<_> = canvases.map(|node| node.rect()).collect();
+    canvases.sort_by(|a, b| a.top().total_cmp(&b.top()));
+    let [free, tab] = canvases[..] else {
+        panic!("{canvases:?}");
+    };
+    assert!(free.height() > free.width() && tab.width() > tab.height());
+    let numbers = |window: &Harness<'static, Shell>, canvas: egui::Rect| -> Vec<String> {
+        let around = canvas.expand2(vec2(50.0, 20.0));
+        let texts = texts(window).into_iter();
+        let numbers = texts.filter(|text| around.contains(text.rect.center()));
+        numbers
+            .map(|text| format!("{} {:.0}", text.text, text.rect.min))
+            .collect()
+    };
+    let before = [free, tab].map(|canvas| numbers(&window, canvas));
+    let at = tab.center() + vec2(0.0, 8.0);
+    window.event(egui::Event::PointerMoved(at));
+    window.run_steps(1);
+    window.event(egui::Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: vec2(0.0, 200.0),
+        modifiers: egui::Modifiers::NONE,
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+    });
+    window.run_steps(40);
+    window.event(egui::Event::PointerGone);
+    window.run_steps(5);
+    let zoomed = numbers(&window, tab);
+    assert_ne!(zoomed, before[1], "the wheel zooms");
+    assert_eq!(numbers(&window, free), before[0], "the other drawing stays");
+    run(&mut window, ViewCommand::SetTab(BottomTab::Log));
+    run(&mut window, ViewCommand::SetTab(BottomTab::Section));
+    assert_eq!(numbers(&window, tab), zoomed);
 }

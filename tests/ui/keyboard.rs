@@ -3,7 +3,7 @@
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use shapematch::app::{Axis, Dialog, MoveCommand, PartCommand, PartRef, Section};
+use shapematch::app::{Axis, Dialog, MoveCommand, PartCommand, PartRef, Section, ViewCommand};
 use shapematch::registration::Method;
 use shapematch::role::Role;
 use shapematch::settings::Choice as _;
@@ -244,6 +244,43 @@ fn under_a_dialog_the_window_keeps_still() {
     window.key_press(Key::M);
     window.run_steps(2);
     assert!(window.state().state().view.is_moved_over);
+}
+
+/// A slow frame takes the click that closes a dialog and what is pressed after it together.
+#[test]
+fn keys_after_the_click_that_closes_a_dialog_are_the_windows() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    for is_after in [false, true] {
+        let ctx = window.ctx.clone();
+        let open = ViewCommand::SetDialog(Some(Dialog::Preferences)).into();
+        window.state_mut().run_commands(vec![open], &ctx);
+        window.run_steps(3);
+        let pos = window.get_by_label("Close").rect().center();
+        let button = |pressed| egui::Event::PointerButton {
+            pos,
+            button: egui::PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        };
+        window
+            .input_mut()
+            .events
+            .extend([egui::Event::PointerMoved(pos), button(true)]);
+        window.step();
+        let mut events = vec![button(false), key(Key::M, Modifiers::NONE)];
+        if !is_after {
+            events.reverse();
+        }
+        window.input_mut().events.extend(events);
+        window.run_steps(3);
+        window.key_up(Key::M);
+        window.step();
+        let view = &window.state().state().view;
+        assert_eq!(view.dialog, None);
+        assert_eq!(view.is_moved_over, is_after, "after the click: {is_after}");
+    }
 }
 
 #[test]

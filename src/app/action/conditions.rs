@@ -1,7 +1,7 @@
 //! Conditions that several actions share.
 
 use super::Reason;
-use crate::app::AppState;
+use crate::app::{AppState, Part};
 use crate::role::Role;
 
 /// `Ok` if the condition holds, else the reason.
@@ -57,6 +57,13 @@ pub(super) fn is_reduced(state: &AppState) -> Result<(), Reason> {
     let is_reduced = |role| state.document.part(role).is_some_and(|p| p.level.is_some());
     let any = Role::ALL.into_iter().any(is_reduced);
     require(any, "No part is reduced.")
+}
+
+/// A deck holds parts beside those that are matched.
+pub(super) fn has_unused_parts(state: &AppState) -> Result<(), Reason> {
+    let has_unused = |role| state.document.part(role).is_some_and(Part::has_unused);
+    let any = Role::ALL.into_iter().any(has_unused);
+    require(any, "Every part is used for the match.")
 }
 
 /// `Ok` if there is something to blink or wipe between.

@@ -189,6 +189,8 @@ actions! {
     ToggleFeatureEdges,
     /// Nodes.
     TogglePoints,
+    /// Parts that are not used for the match.
+    ToggleUnused,
     /// Colours of the deviation.
     ToggleDeviation,
     /// Colours of the overlap.
@@ -377,6 +379,7 @@ impl Action {
             Self::ToggleEdges => display.has_edges,
             Self::ToggleFeatureEdges => display.has_feature_edges,
             Self::TogglePoints => display.has_points,
+            Self::ToggleUnused => display.has_unused,
             Self::ToggleDeviation => state.shown_colors() == ColorBy::Deviation,
             Self::ToggleOverlap => state.shown_colors() == ColorBy::Overlap,
             Self::ToggleUncertainty => state.shown_colors() == ColorBy::Uncertainty,

@@ -1,6 +1,8 @@
 //! The menu *View*: display, inspection, section, camera, size of the window's text.
 
-use super::conditions::{always, has_mapping, has_two_pictures, is_reduced, require};
+use super::conditions::{
+    always, has_mapping, has_two_pictures, has_unused_parts, is_reduced, require,
+};
 use super::row::keys::{ctrl, ctrl_digit, digit, function, key, shift};
 use super::row::some;
 use super::{Action, ActionRow, Key, Keys, MenuGroup, Reason, Shortcut};
@@ -119,6 +121,14 @@ const DISPLAY: &[ActionRow] = &[
         keys: Keys::NONE,
         enabled: always,
         command: |state| shown_with(state, |display| display.has_points ^= true),
+    },
+    ActionRow {
+        action: Action::ToggleUnused,
+        label: "Show unused parts",
+        tooltip: "Draw the parts of a deck that are not used for the match, grey and faint",
+        keys: Keys::NONE,
+        enabled: has_unused_parts,
+        command: |state| shown_with(state, |display| display.has_unused ^= true),
     },
 ];
 

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::probe::Probed;
 use super::{FurtherPose, MapResult, Placing};
 use crate::app::follow_up::FollowUp;
 use crate::app::parts::length_factor_of;
@@ -38,7 +39,7 @@ pub struct Further {
     pub placing: Option<Placing>,
 }
 
-/// Further stamped files that are read and matched.
+/// Further stamped files that are read and matched, and the element that is probed.
 #[derive(Debug, Clone, Default)]
 pub struct MappingState {
     /// Files that are being read, by the number they are to have.
@@ -49,6 +50,8 @@ pub struct MappingState {
     pub(super) placing: Option<Task>,
     /// The state of a project that was opened, whose mapping is made again; until another one is asked for.
     pub(super) restoring: Option<Stamp>,
+    /// The element that is looked at closely. Looking is no step of the history.
+    pub(super) probed: Option<Probed>,
     /// Matches that gave no pose, with the reason where they were not given up.
     pub(super) unplaced: Vec<(Task, Option<String>)>,
 }

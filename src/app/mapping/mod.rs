@@ -17,6 +17,7 @@ pub use further::{Further, MappingState};
 pub use picture::{MapDisplay, MapPicture};
 pub use placing::Placing;
 pub use probe::ProbeReport;
+use probe::Probed;
 pub use quantity::Quantity;
 pub(super) use results::{take_compared, take_mapped};
 pub use shown_files::{FileShare, ShownFile};
@@ -50,8 +51,6 @@ pub struct Mapping {
     pub compare_with: Option<PathBuf>,
     /// The last mapping.
     pub result: Option<MapResult>,
-    /// The element that is looked at closely, by its place in the run.
-    pub probe: Option<usize>,
     /// Ids of the crash elements that were pinned for the report, in this order.
     pub pins: Vec<u64>,
 }
@@ -339,11 +338,7 @@ impl MappingState {
             MapCommand::EndComparison => end_comparison(work),
             MapCommand::TogglePin(id) => toggle_pin(work, id),
             MapCommand::Probe(element) => {
-                if work.document.mapping.probe != element {
-                    work.commit("Probe an element", |document| {
-                        document.mapping.probe = element;
-                    });
-                }
+                self.probed = element.and_then(|element| Probed::of(work.document, element));
             }
         }
         Vec::new()

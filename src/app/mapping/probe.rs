@@ -9,6 +9,29 @@ use crate::pipeline::load::LoadedPart;
 use crate::pipeline::map::Profile;
 use crate::role::Role;
 
+/// An element that was probed: it is known again in every mapping that has it at the same place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Probed {
+    /// Number of the crash part.
+    crash_revision: u64,
+    /// Its place in the run.
+    element: usize,
+    /// Its place among the shells of the crash part.
+    shell: u32,
+}
+
+impl Probed {
+    /// An element of the current mapping.
+    pub fn of(document: &Document, element: usize) -> Option<Self> {
+        let result = document.current_mapping()?;
+        Some(Self {
+            crash_revision: result.stamp.parts.crash,
+            element,
+            shell: *result.run.shells.get(element)?,
+        })
+    }
+}
+
 /// Everything about one element.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProbeReport {
@@ -62,10 +85,16 @@ impl Document {
 }
 
 impl AppState {
+    /// The probed element, by its place in the run of the current mapping.
+    pub fn probed(&self) -> Option<usize> {
+        let probed = self.mapping.probed?;
+        (Probed::of(&self.document, probed.element) == Some(probed)).then_some(probed.element)
+    }
+
     /// Where the probed element lies on the crash part, and the one it took its values from on its
     /// stamped part, each in its own model, with the part's number among the stamped files.
     pub fn probed_places(&self) -> Vec<(Role, usize, Point3)> {
-        let probed = self.document.mapping.probe;
+        let probed = self.probed();
         let Some((element, result)) = probed.zip(self.document.current_mapping()) else {
             return Vec::new();
         };
@@ -85,7 +114,7 @@ impl AppState {
 
     /// The probed element, if the mapping is still the one it belongs to.
     pub fn probe(&self) -> Option<ProbeReport> {
-        let element = self.document.mapping.probe?;
+        let element = self.probed()?;
         let both = self.document.both()?;
         let result = self.document.current_mapping()?;
         let run = &result.run;

@@ -83,11 +83,6 @@ pub(in crate::app) fn take_mapped(
     let stamp = work.document.stamp();
     let put = |document: &mut Document| {
         let mapping = &mut document.mapping;
-        let before = mapping.result.as_ref();
-        // The probe stays where the same elements were mapped anew.
-        if before.is_none_or(|before| before.run.shells != run.shells) {
-            mapping.probe = None;
-        }
         mapping.result = Some(MapResult {
             run: run.into(),
             record: record.into(),

@@ -133,7 +133,6 @@ impl AppState {
                 further: Vec::new(),
                 compare_with: project.mapping_compared_with.clone(),
                 result: None,
-                probe: None,
                 pins: project.mapping_pins.clone(),
             },
             pose: StampedPose {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{BottomTab, Display, Section, ViewCommand, ViewRoom, ViewState};
+use super::{BottomTab, Display, Fitted, Section, ViewCommand, ViewRoom, ViewState};
 use crate::app::{AppState, Document, PartRef, ShownFile, facts};
 use crate::geometry::{Aabb, Camera, Point3, Similarity, Vector3};
 use crate::pipeline::load::LoadedPart;
@@ -127,12 +127,13 @@ impl ViewState {
         let mut camera = *self.cameras.get(role);
         // Turned by hand it is no longer fitted, but nothing was brought closer.
         let fitted = *self.fitted.get(role);
-        let is_fitted = fitted.is_some_and(|fitted| fitted.height == camera.height);
+        let is_fitted = fitted.is_some_and(|fitted| fitted.camera.height == camera.height);
         turn(&mut camera);
         self.set_camera(role, camera);
         // What was seen whole is seen whole from there too.
         if is_fitted {
-            self.refit(role, scene);
+            let room = self.kept_room(role, scene);
+            self.refit(role, &room, scene);
         }
     }
 
@@ -160,6 +161,13 @@ impl ViewState {
         }
     }
 
+    /// The room that a fitted window's picture is fitted into again.
+    fn kept_room(&self, role: Role, scene: &Scene<'_>) -> ViewRoom {
+        let room = self.room(role, scene);
+        let fitted = self.fitted.get(role).as_ref();
+        fitted.map_or(room, |fitted| room.keeping_legend_of(&fitted.room))
+    }
+
     /// Takes over the shape of a window and what lies over it; what was seen whole stays so.
     fn set_room(&mut self, role: Role, room: ViewRoom, scene: &Scene<'_>) {
         *self.rooms.get_mut(role) = room;
@@ -174,14 +182,16 @@ impl ViewState {
             role
         };
         if self.is_fitted(of) {
-            self.refit(of, scene);
+            let room = self.kept_room(of, scene);
+            self.refit(of, &room, scene);
         }
     }
 
     /// Fits what a window shows, tightly: a turned sheet fills the picture better than its box.
     pub(in crate::app) fn fit_all(&mut self, role: Role, scene: &Scene<'_>) {
         self.remember_camera(role);
-        self.refit(role, scene);
+        let room = self.room(role, scene);
+        self.refit(role, &room, scene);
     }
 
     /// Linked cameras share their zoom: the window that has the keys is fitted last, so that it shows all.
@@ -191,7 +201,7 @@ impl ViewState {
         }
     }
 
-    fn refit(&mut self, role: Role, scene: &Scene<'_>) {
+    fn refit(&mut self, role: Role, room: &ViewRoom, scene: &Scene<'_>) {
         // Its own window shows the stamped part where it really is, also while the other tries out poses.
         let stamped_pose = match role {
             Role::Crash => scene.pose,
@@ -228,14 +238,22 @@ impl ViewState {
             let poses = poses.filter_map(|pose| result.run.pose(pose));
             points.extend(poses.flat_map(|pose| spread(&part.loaded, pose)));
         }
-        let room = self.room(role, scene);
         let other = role.other();
         // A linked camera comes along, moved by nobody.
         let is_other_fitted = self.are_linked && self.is_fitted(other);
-        self.fit(role, &points, &room);
-        *self.fitted.get_mut(role) = Some(*self.cameras.get(role));
-        if is_other_fitted {
-            *self.fitted.get_mut(other) = Some(*self.cameras.get(other));
+        self.fit(role, &points, room);
+        *self.fitted.get_mut(role) = Some(Fitted {
+            camera: *self.cameras.get(role),
+            room: *room,
+        });
+        let camera = *self.cameras.get(other);
+        if let Some(fitted) = self
+            .fitted
+            .get_mut(other)
+            .as_mut()
+            .filter(|_| is_other_fitted)
+        {
+            fitted.camera = camera;
         }
     }
 

@@ -305,6 +305,8 @@ pub struct Display {
     pub has_feature_edges: bool,
     /// Nodes.
     pub has_points: bool,
+    /// Parts of the decks that are not used for the match, grey and faint.
+    pub has_unused: bool,
     /// What the colours say.
     pub color_by: ColorBy,
     /// Maps, limits, tolerance.
@@ -331,6 +333,7 @@ impl Default for Display {
             has_edges: false,
             has_feature_edges: true,
             has_points: false,
+            has_unused: false,
             color_by: ColorBy::default(),
             coloring: Coloring::default(),
             mapped: MapDisplay::default(),

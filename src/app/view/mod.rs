@@ -32,9 +32,8 @@ pub struct ViewState {
     pub n_restored: u64,
     /// Shape of each window and what lies over it.
     pub rooms: PerRole<ViewRoom>,
-    /// The cameras as they were fitted last: one that is still there is fitted again when its window
-    /// changes.
-    fitted: PerRole<Option<Camera>>,
+    /// How the cameras were fitted last: one that is still there is fitted again when its window changes.
+    fitted: PerRole<Option<Fitted>>,
     /// Rotation and zoom of one window follow the other.
     pub are_linked: bool,
     /// Turntable or free.
@@ -134,8 +133,16 @@ impl ViewState {
 
     /// True while a window shows what it was fitted to: the user has not moved its camera since.
     pub fn is_fitted(&self, role: Role) -> bool {
-        *self.fitted.get(role) == Some(*self.cameras.get(role))
+        let fitted = self.fitted.get(role).as_ref();
+        fitted.is_some_and(|fitted| fitted.camera == *self.cameras.get(role))
     }
+}
+
+/// A camera that was fitted, and the room that it was fitted into.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Fitted {
+    camera: Camera,
+    room: ViewRoom,
 }
 
 /// The shape of a 3D window and what lies over its picture.
@@ -176,6 +183,27 @@ impl ViewRoom {
         };
         let mut pairs = sides(self).zip(sides(other));
         pairs.any(|(a, b)| (a - b).abs() > 0.01)
+    }
+
+    /// This room with all that the legend has covered since the window was fitted into `before`: another map has a
+    /// legend of another size, and the picture must not jump with it. A window of another shape, and one whose legend
+    /// came to an edge that was free, is fitted anew.
+    fn keeping_legend_of(&self, before: &Self) -> Self {
+        let has_other_shape = (self.aspect / before.aspect).ln().abs() > 0.01;
+        let mut sides = self.covered.beside.iter().zip(&before.covered.beside);
+        let is_at_other_edge = sides.any(|(now, then)| *now > 0.0 && *then == 0.0);
+        if has_other_shape || is_at_other_edge {
+            return *self;
+        }
+        let Covered { beside, above, .. } = self.covered.union(&before.covered);
+        Self {
+            covered: Covered {
+                beside,
+                above,
+                ..self.covered
+            },
+            ..*self
+        }
     }
 
     /// The room that is free in both of two windows that show one camera's picture.

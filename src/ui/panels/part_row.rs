@@ -272,7 +272,26 @@ pub fn menu_ui(ui: &mut Ui, row: &Row<'_>, state: &AppState, commands: &mut Vec<
         }
         ui.separator();
     }
+    if !is_used {
+        unused_ui(ui, state, commands);
+    }
     color_ui(ui, row, commands);
+}
+
+/// Whether all parts that are not used are drawn.
+fn unused_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let action = Action::ToggleUnused;
+    let mut is_on = action.is_on(state) == Some(true);
+    let row = action.row();
+    if ui
+        .checkbox(&mut is_on, row.label)
+        .on_hover_text(row.tooltip)
+        .changed()
+    {
+        commands.extend(action.command(state));
+        ui.close();
+    }
+    ui.separator();
 }
 
 fn color_ui(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>) {

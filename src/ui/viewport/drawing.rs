@@ -1,11 +1,17 @@
 //! The section laid flat, in a window or tab of its own: the outlines of all parts, axes of equal
 //! scale, distances between clicked points, the gap at the cursor, and gaps drawn ten times as wide.
 
-use egui::{Align, Button, Color32, Layout, RichText, Sense, Ui, Vec2, WidgetInfo, vec2};
+mod choices;
+
+use egui::{
+    Align, Align2, Button, Color32, FontId, Id, Layout, Rect, RichText, Sense, Ui, Vec2,
+    WidgetInfo, vec2,
+};
 use egui_plot::{LineStyle, Plot, PlotBounds, PlotPoints, PlotUi, Points};
 
+use self::choices::{Choices, Zoom};
 use super::coordinates::with_coordinates;
-use super::outlines::{Lie, Outline, around};
+use super::outlines::{Lie, Outline, around, direction_name};
 use super::sections::{self, Cuts, Gaps};
 use crate::app::{Action, AppState, Command, InspectCommand, SectionView};
 use crate::geometry::{Gap, Plane, Point3, SectionLine, Vector3, gap_to_nearest, nearest_on_lines};
@@ -50,27 +56,6 @@ pub(super) struct Drawing<'a> {
     pub is_cutting: bool,
 }
 
-/// What the user chose, kept while the program runs.
-#[derive(Debug, Clone, Default)]
-struct Choices {
-    is_exaggerated: bool,
-    /// Clicked points.
-    picked: Vec<[f64; 2]>,
-    /// The direction of the plane that was zoomed to its worst gap.
-    zoomed: Option<String>,
-    zoom: Option<Zoom>,
-    /// How the outlines lay when they were drawn last.
-    lie: Option<Lie>,
-}
-
-/// Where the drawing goes next.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Zoom {
-    WorstGap,
-    Part(Role),
-    All,
-}
-
 /// Instead of a drawing where there is no plane.
 pub(super) fn nothing_ui(ui: &mut Ui) {
     nothing_yet(ui, "No section", "S cuts the parts with a plane");
@@ -79,15 +64,15 @@ pub(super) fn nothing_ui(ui: &mut Ui) {
 impl Drawing<'_> {
     /// Controls and drawing in the rest of `ui`.
     pub fn show(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let id = egui::Id::unique("section drawing").with(ui.ctx().viewport_id());
+        let id = ui.make_persistent_id("section drawing");
         let mut choices: Choices = ui.data(|data| data.get_temp(id)).unwrap_or_default();
         ui.visuals_mut().override_text_color = Some(self.look.text);
         ui.spacing_mut().item_spacing = vec2(6.0, 6.0);
         let room = ui.available_size();
         let seen = if room.x > WIDE * room.y && room.x > 2.0 * SIDE {
-            self.beside(ui, &mut choices, commands)
+            self.beside(ui, (id, &mut choices), commands)
         } else {
-            self.below(ui, &mut choices, commands)
+            self.below(ui, (id, &mut choices), commands)
         };
         if let Some(at) = seen.clicked {
             if choices.picked.len() > 1 {
@@ -102,7 +87,12 @@ impl Drawing<'_> {
     }
 
     /// A low and wide room: the controls stand left of the drawing.
-    fn beside(&self, ui: &mut Ui, choices: &mut Choices, commands: &mut Vec<Command>) -> Seen {
+    fn beside(
+        &self,
+        ui: &mut Ui,
+        (id, choices): (Id, &mut Choices),
+        commands: &mut Vec<Command>,
+    ) -> Seen {
         let height = ui.available_height();
         ui.horizontal_top(|ui| {
             let side = ui.allocate_ui(vec2(SIDE, height), |ui| {
@@ -117,7 +107,7 @@ impl Drawing<'_> {
                 .inner
             });
             ui.add_space(UNIT);
-            let seen = self.plot(ui, ui.available_size(), choices);
+            let seen = self.plot(ui, ui.available_size(), (id, choices));
             let builder = egui::UiBuilder::new().max_rect(side.inner);
             ui.scope_builder(builder, |ui| {
                 ui.set_clip_rect(side.inner.intersect(ui.clip_rect()));
@@ -129,7 +119,12 @@ impl Drawing<'_> {
     }
 
     /// A high room: controls above, measures below.
-    fn below(&self, ui: &mut Ui, choices: &mut Choices, commands: &mut Vec<Command>) -> Seen {
+    fn below(
+        &self,
+        ui: &mut Ui,
+        (id, choices): (Id, &mut Choices),
+        commands: &mut Vec<Command>,
+    ) -> Seen {
         ui.horizontal_wrapped(|ui| {
             self.names(ui);
             ui.add_space(UNIT);
@@ -140,7 +135,7 @@ impl Drawing<'_> {
             self.zoom_buttons(ui, choices);
         });
         let size = vec2(ui.available_width(), ui.available_height() - 24.0);
-        let seen = self.plot(ui, size, choices);
+        let seen = self.plot(ui, size, (id, choices));
         self.foot(ui, &seen, &choices.picked);
         seen
     }
@@ -251,27 +246,16 @@ impl Drawing<'_> {
     }
 
     /// The outlines with what is measured between them.
-    fn plot(&self, ui: &mut Ui, size: Vec2, choices: &mut Choices) -> Seen {
-        // Another direction of the plane is another picture, and so is another place.
-        let (n, is_high) = (self.plane.normal, size.y > size.x);
-        let view = format!("{:.2} {:.2} {:.2} {is_high}", n.x, n.y, n.z);
-        let has_worst = self.gaps.is_some_and(|gaps| gaps.worst().is_some());
+    fn plot(&self, ui: &mut Ui, size: Vec2, (id, choices): (Id, &mut Choices)) -> Seen {
         let outlines = self.outlines(choices.is_exaggerated);
         let lie = Lie::of(&outlines);
         if choices.lie.replace(lie) != Some(lie) {
             // The buttons were drawn for what was seen before.
             ui.ctx().request_repaint();
         }
-        let first = match lie {
-            Lie::Apart(_) => Some((format!("{view} apart"), Zoom::Part(Role::Crash))),
-            _ => has_worst.then(|| (view.clone(), Zoom::WorstGap)),
-        };
-        if let Some((place, zoom)) = first
-            && choices.zoomed.as_ref() != Some(&place)
-        {
-            choices.zoom = choices.zoom.or(Some(zoom));
-            choices.zoomed = Some(place);
-        }
+        let has_worst = self.gaps.is_some_and(|gaps| gaps.worst().is_some());
+        let parts = self.state.document.stamp().parts;
+        let is_new = choices.notice((self.plane.normal, parts), lie, has_worst);
         let mut seen = Seen {
             lie: Some(lie),
             is_exaggerated: choices.is_exaggerated,
@@ -284,7 +268,8 @@ impl Drawing<'_> {
         let unit = self.state.document.unit_suffix();
         let width = size.x.max(40.0);
         ui.visuals_mut().extreme_bg_color = Color32::TRANSPARENT;
-        let plot = Plot::new(("section", view))
+        let plot = Plot::new("section")
+            .id(id.with("plot"))
             .width(width)
             .height(size.y.max(40.0))
             .data_aspect(1.0)
@@ -298,21 +283,46 @@ impl Drawing<'_> {
             .show_crosshair(false)
             .label_formatter(|_| None);
         let shown = with_coordinates(ui, plot, (width - AXIS, unit)).show(ui, |plot| {
+            if is_new {
+                plot.set_auto_bounds(true);
+            }
             if let Some(bounds) = zoom {
                 plot.set_plot_bounds(bounds);
             }
+            choices.is_zoomed |= !is_new && !plot.auto_bounds().any();
             Self::lines(plot, outlines);
             zoom_by_wheel(plot);
             self.measured(plot, &choices.picked);
             self.look_at(plot, &mut seen);
         });
         let response = shown.response;
+        let axes = self.plane.axes().map(|axis| direction_name(&axis));
+        self.axis_names(ui, response.rect, &axes);
         response.widget_info(|| {
-            WidgetInfo::labeled(egui::Role::Canvas, true, "Outlines in the section plane")
+            let [right, up] = &axes;
+            let name = format!("Outlines in the section plane, {right} to the right, {up} upwards");
+            WidgetInfo::labeled(egui::Role::Canvas, true, name)
         });
+        // A double click shows all again and measures nothing.
         seen.clicked = seen.at.filter(|_| response.clicked());
-        seen.is_forgotten = response.secondary_clicked();
+        seen.is_forgotten = response.secondary_clicked() || response.double_clicked();
         seen
+    }
+
+    /// The directions of the axes at their ends, with the unit of the numbers along them.
+    fn axis_names(&self, ui: &Ui, plot: Rect, [right, up]: &[String; 2]) {
+        let unit = match self.state.document.unit_suffix().trim() {
+            "" => String::new(),
+            unit => format!(", {unit}"),
+        };
+        let text = |at, align, name: &str| {
+            let (text, font) = (format!("{name}{unit}"), FontId::proportional(12.0));
+            ui.painter().text(at, align, text, font, self.look.text);
+        };
+        let at = plot.right_bottom() - vec2(4.0, 2.0);
+        text(at, Align2::RIGHT_BOTTOM, right);
+        let at = plot.left_top() + vec2(4.0, 2.0);
+        text(at, Align2::LEFT_TOP, up);
     }
 
     /// The outlines in the axes of the plane, the crash part's first so that it lies below.

@@ -248,6 +248,9 @@ impl FieldStore {
 
 /// True if a part is to be coloured by a field in a window.
 pub(super) fn is_wanted(state: &AppState, window: Role, instance: &PartInstance) -> bool {
+    if instance.is_ghost {
+        return false;
+    }
     let display = &state.view.display;
     let (role, kind) = (instance.role, FieldKind::of(state.color_by(window)));
     if let Some(file) = &instance.further {

@@ -19,6 +19,7 @@ mod sections;
 mod shape;
 mod snapshot;
 mod tools;
+mod unused;
 mod visible_parts;
 mod window;
 
@@ -42,12 +43,14 @@ use picture::{Layer, Picture};
 use sections::SectionStore;
 pub use shape::read_points;
 use snapshot::LastFrame;
+use unused::UnusedStore;
 use window::{Following, Window};
 
 /// The 3D windows with everything they remember between frames.
 pub struct Viewports {
     render_state: Option<RenderState>,
     meshes: MeshStore,
+    unused: UnusedStore,
     fields: FieldStore,
     sections: SectionStore,
     crossing: Crossing,
@@ -65,9 +68,11 @@ impl Viewports {
         if let Some(render_state) = render_state {
             Gpu::install(render_state);
         }
+        let is_on_processor = render_state.is_some_and(gpu::is_software);
         Self {
             render_state: render_state.cloned(),
-            meshes: MeshStore::new(render_state.is_some_and(gpu::is_software)),
+            meshes: MeshStore::new(is_on_processor),
+            unused: UnusedStore::new(is_on_processor),
             fields: FieldStore::new(),
             sections: SectionStore::new(),
             crossing: Crossing::default(),
@@ -159,7 +164,8 @@ impl Viewports {
     /// True while meshes or colours are being made that a window wants to show. For tests and
     /// pictures that must not be taken too early.
     pub fn is_waiting(&self) -> bool {
-        self.meshes.is_waiting() || self.fields.is_waiting() || self.sections.is_waiting()
+        let is_waiting = self.meshes.is_waiting() || self.unused.is_waiting();
+        is_waiting || self.fields.is_waiting() || self.sections.is_waiting()
     }
 
     /// True if a picture that was drawn since the last call is not the exact one, of which large parts have
@@ -247,7 +253,9 @@ impl Viewports {
 
     /// The window's scene, from the meshes that are ready.
     fn picture_of(&mut self, ui: &Ui, view: &ViewFrame, state: &AppState, look: &Look) -> Picture {
-        let instances: Vec<_> = visible_parts::visible_parts(state, view)
+        let shown = visible_parts::visible_parts(state, view);
+        let unused = self.unused.drawables((state, view), look, &shown, ui.ctx());
+        let instances: Vec<_> = shown
             .into_iter()
             .filter_map(|instance| Some((instance.source(state)?, instance)))
             .collect();
@@ -287,13 +295,15 @@ impl Viewports {
             .map(|((mesh, instance), field)| Layer {
                 role: instance.role,
                 mesh,
-                field,
+                // A ghost has none.
+                field: field.filter(|_| !instance.is_ghost),
                 wants_field: fields::is_wanted(state, view.window, &instance),
                 instance,
             });
         let layers = layers.collect();
-        let mut picture = Picture::new(state, view, look, layers, ui.pixels_per_point());
+        let mut picture = Picture::new(state, view, look, layers, density(ui.ctx()));
         picture.cut(state, look, &cuts);
+        picture.add(unused);
         picture
     }
 
@@ -388,10 +398,34 @@ impl Viewports {
     }
 }
 
+/// Pixels per point of the screen alone: lines and points in the picture do not grow with the text.
+fn density(ctx: &egui::Context) -> f32 {
+    ctx.pixels_per_point() / ctx.zoom_factor()
+}
+
 /// True if the window should show something and nothing of it is ready.
 fn is_preparing(state: &AppState, view: &ViewFrame, picture: &Picture) -> bool {
     picture.is_empty()
         && visible_parts::visible_parts(state, view)
             .iter()
             .any(|instance| state.document.part(instance.role).is_some())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_do_not_grow_with_the_text() {
+        let ctx = egui::Context::default();
+        for scale in [1.0, 2.5] {
+            ctx.set_zoom_factor(scale);
+            let mut input = egui::RawInput::default();
+            let screen = input.viewports.get_mut(&egui::ViewportId::ROOT);
+            screen.expect("the window").native_pixels_per_point = Some(1.5);
+            let mut found = 0.0;
+            let _ = ctx.run_ui(input, |ui| found = density(ui.ctx()));
+            assert!((found - 1.5).abs() < 1e-6, "{found} at {scale}");
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! Outlines laid flat, and how those of the two parts lie to each other.
 
 use super::sections::LineStyle;
+use crate::geometry::Vector3;
 use crate::role::Role;
 
 /// A line of an outline in the axes of the plane.
@@ -67,6 +68,27 @@ impl Lie {
     }
 }
 
+/// A direction by its coordinate letter, or by its parts where it lies between the axes.
+pub(super) fn direction_name(direction: &Vector3) -> String {
+    let sign = |part: f64| if part < 0.0 { "−" } else { "" };
+    let letters = ["X", "Y", "Z"];
+    let mut along = letters.into_iter().zip(direction.iter());
+    if let Some((letter, part)) = along.find(|(_, part)| part.abs() > 1.0 - 1e-9) {
+        return format!("{}{letter}", sign(*part));
+    }
+    let parts = letters.into_iter().zip(direction.iter());
+    let parts = parts.filter(|(_, part)| part.abs() >= 0.005);
+    let terms = parts.enumerate().map(|(index, (letter, part))| {
+        let sign = match (index, *part < 0.0) {
+            (0, _) => sign(*part),
+            (_, false) => " + ",
+            (_, true) => " − ",
+        };
+        format!("{sign}{:.2} {letter}", part.abs())
+    });
+    terms.collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -80,6 +102,14 @@ mod tests {
             },
             points: vec![[left, 0.0], [left + 3.0, 4.0]],
         }
+    }
+
+    #[test]
+    fn directions_have_the_letters_of_the_axes() {
+        assert_eq!(direction_name(&Vector3::y()), "Y");
+        assert_eq!(direction_name(&-Vector3::x()), "−X");
+        let between = Vector3::new(-0.6, 0.0, 0.8);
+        assert_eq!(direction_name(&between), "−0.60 X + 0.80 Z");
     }
 
     #[test]

@@ -167,6 +167,13 @@ impl Picture {
         });
     }
 
+    /// Adds what is only seen: nothing is found at its places.
+    pub fn add(&mut self, unused: Vec<Drawable>) {
+        if !unused.is_empty() {
+            Arc::make_mut(&mut self.scene).drawables.extend(unused);
+        }
+    }
+
     /// True if some part carries a field, or should.
     pub fn has_colored(&self) -> bool {
         self.layers.iter().any(|layer| layer.wants_field)

@@ -11,7 +11,7 @@ use crate::ui::theme::Look;
 /// Opacity of the crash part when one sees through it.
 const SEE_THROUGH: f32 = 0.2;
 /// Opacity of a part without colours of its own before or behind one that shows the deviation.
-const GHOST: f32 = 0.15;
+pub(super) const GHOST: f32 = 0.15;
 /// Opacity of the stamped part while something else than its real pose is shown.
 const PREVIEW: f32 = 0.62;
 
@@ -32,6 +32,12 @@ pub(super) struct PartInstance {
 }
 
 impl PartInstance {
+    /// Grey and faint from now on.
+    fn fade(&mut self) {
+        self.is_ghost = true;
+        self.opacity = self.opacity.min(GHOST);
+    }
+
     /// Its mesh; `None` if it is not loaded. A further stamped file has no levels.
     pub fn source(&self, state: &AppState) -> Option<MeshSource> {
         if let Some(file) = &self.further {
@@ -106,32 +112,7 @@ pub(super) fn visible_parts(state: &AppState, view: &ViewFrame) -> Vec<PartInsta
         let first = stamped(state, view).into_iter();
         parts.extend(first.flat_map(|first| all_files(state, first)));
     }
-    let is_shared = view.window == Role::Crash && state.view.is_moved_over;
-    if is_shared && state.color_by(view.window) == ColorBy::Deviation {
-        let colored = &state.view.display.coloring.on;
-        for instance in parts.iter_mut().filter(|part| !*colored.get(part.role)) {
-            instance.is_ghost = true;
-            instance.opacity = instance.opacity.min(GHOST);
-        }
-    }
-    if is_shared && state.color_by(view.window) == ColorBy::Uncertainty {
-        // Only the stamped part has one; the crash part would hide half of it.
-        for instance in parts.iter_mut().filter(|part| part.role == Role::Crash) {
-            instance.is_ghost = true;
-            instance.opacity = instance.opacity.min(GHOST);
-        }
-    }
-    // Distances are those of the first stamped part, and so is the uncertainty of its pose.
-    let is_measured = matches!(
-        state.color_by(view.window),
-        ColorBy::Deviation | ColorBy::Overlap | ColorBy::Uncertainty
-    );
-    for instance in parts.iter_mut().filter(|part| part.further.is_some()) {
-        if is_measured {
-            instance.is_ghost = true;
-            instance.opacity = instance.opacity.min(GHOST);
-        }
-    }
+    fade(state, view, &mut parts);
     match divider(state, view) {
         Some(Divider::Wipe(_)) => {
             for instance in &mut parts {
@@ -144,6 +125,38 @@ pub(super) fn visible_parts(state: &AppState, view: &ViewFrame) -> Vec<PartInsta
         }
         Some(Divider::Split(_)) => parts.iter().flat_map(both_sides).collect(),
         None => parts,
+    }
+}
+
+/// Makes ghosts of the parts that would hide or tint the colours of another one.
+fn fade(state: &AppState, view: &ViewFrame, parts: &mut [PartInstance]) {
+    let is_shared = view.window == Role::Crash && state.view.is_moved_over;
+    let by = state.color_by(view.window);
+    let colored = &state.view.display.coloring.on;
+    for instance in parts.iter_mut() {
+        let hides = match by {
+            ColorBy::Deviation => is_shared && !*colored.get(instance.role),
+            // Only the stamped part has one; the crash part would hide half of it.
+            ColorBy::Uncertainty => is_shared && instance.role == Role::Crash,
+            _ => false,
+        };
+        // Distances are those of the first stamped part, and so is the uncertainty of its pose.
+        if hides || by.is_match_map() && instance.further.is_some() {
+            instance.fade();
+        }
+    }
+    // Colours that are seen through colours of another part are those of neither in the legend.
+    let is_map = !matches!(by, ColorBy::Role | ColorBy::Part) && !state.is_mapping_shown();
+    let is_wiped = matches!(divider(state, view), Some(Divider::Wipe(_)));
+    let is_looked_through = is_map && !is_wiped && crash_opacity(state) < 1.0;
+    let is_behind = |part: &PartInstance| part.role == Role::Stamped && !part.is_ghost;
+    if is_looked_through && parts.iter().any(is_behind) {
+        for instance in parts.iter_mut().filter(|part| part.role == Role::Crash) {
+            instance.is_ghost = true;
+            if state.view.display.is_see_through {
+                instance.fade();
+            }
+        }
     }
 }
 
@@ -353,5 +366,86 @@ pub(super) fn style(state: &AppState, view: &ViewFrame) -> Style {
         borders: display.has_feature_edges,
         points: display.has_points,
         ..Style::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::formats::Model;
+    use crate::geometry::{Camera, Point3, TriMesh};
+    use crate::jobs::{PartFacts, PartSource};
+    use crate::monitor::Monitor;
+    use crate::pipeline::load::{LoadSettings, prepare};
+    use crate::role::PerRole;
+
+    /// A window with a triangle as each of the parts, the stamped one moved over.
+    fn moved_over() -> AppState {
+        let corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 3.0, 0.0]].map(Point3::from);
+        let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
+        let model = Arc::new(Model::from_mesh(&mesh, "triangle"));
+        let path = Path::new("triangle.k");
+        let (settings, monitor) = (LoadSettings::default(), Monitor::silent());
+        let part = |revision| {
+            let part = prepare(path, Arc::clone(&model), &settings, &monitor).unwrap();
+            let facts = PartFacts::of(&part, &monitor).unwrap();
+            let source = PartSource::File(path.to_path_buf());
+            Some(Part::new(Arc::new(part), Arc::new(facts), source, revision))
+        };
+        let mut state = AppState::default();
+        state.document.parts = PerRole {
+            crash: part(1),
+            stamped: part(2),
+        };
+        state.view.is_moved_over = true;
+        state
+    }
+
+    /// Which parts the left window shows as ghosts.
+    fn ghosts(state: &AppState) -> Vec<Role> {
+        let view = ViewFrame {
+            window: Role::Crash,
+            camera: Camera::default(),
+            aspect: 1.0,
+            pose: Similarity::identity(),
+            over: 1.0,
+            is_bare: false,
+        };
+        let parts = visible_parts(state, &view);
+        assert_eq!(parts.len(), 2);
+        let ghosts = parts.iter().filter(|part| part.is_ghost);
+        ghosts.map(|part| part.role).collect()
+    }
+
+    #[test]
+    fn colours_of_a_map_are_seen_through_grey_alone() {
+        let mut state = moved_over();
+        for by in [ColorBy::Overlap, ColorBy::Deviation, ColorBy::Thickness] {
+            state.view.display.color_by = by;
+            state.view.display.coloring.on = PerRole {
+                crash: true,
+                stamped: true,
+            };
+            assert_eq!(ghosts(&state), [], "{by:?}");
+            state.view.display.is_see_through = true;
+            assert_eq!(ghosts(&state), [Role::Crash], "{by:?}");
+            // Left and right of a line nothing is seen through.
+            state.view.display.wipe = Some(0.5);
+            assert_eq!(ghosts(&state), [], "{by:?}");
+            state.view.display.wipe = None;
+            state.view.display.is_see_through = false;
+        }
+        state.view.display.opacity.crash = 0.5;
+        assert_eq!(ghosts(&state), [Role::Crash]);
+        // The part that has the colours keeps them.
+        state.view.display.color_by = ColorBy::Deviation;
+        state.view.display.coloring.on.stamped = false;
+        assert_eq!(ghosts(&state), [Role::Stamped]);
+        // Without a map each part has its own colour.
+        state.view.display.color_by = ColorBy::Role;
+        assert_eq!(ghosts(&state), []);
     }
 }

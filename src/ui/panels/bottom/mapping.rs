@@ -39,7 +39,7 @@ pub fn mapping_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let (width, height) = (ui.available_width(), ui.available_height());
     // The names of the checks are read whole, and six percentiles stand beside each other. While no element is
     // probed, the checks have most of its room.
-    let probe = if state.document.mapping.probe.is_some() {
+    let probe = if state.probed().is_some() {
         0.325 * width
     } else {
         0.19 * width
@@ -116,7 +116,7 @@ fn view_id() -> egui::Id {
 
 /// The one that is shown where there is room for one: what was chosen, or the probe once an element is probed.
 fn shown_view(ui: &Ui, state: &AppState) -> View {
-    let probe = state.document.mapping.probe;
+    let probe = state.probed();
     let known: Option<(View, Option<usize>)> = ui.data(|data| data.get_temp(view_id()));
     let (mut view, before) = known.unwrap_or((View::Checks, None));
     if probe.is_some() && probe != before {
@@ -127,7 +127,7 @@ fn shown_view(ui: &Ui, state: &AppState) -> View {
 }
 
 fn choose_view(ui: &Ui, state: &AppState, view: View) {
-    let probe = state.document.mapping.probe;
+    let probe = state.probed();
     ui.data_mut(|data| data.insert_temp(view_id(), (view, probe)));
 }
 

@@ -21,6 +21,8 @@ const BEYOND: f32 = 5.0;
 const LETTER: f32 = 12.0;
 /// Radius of the ground below a letter.
 const BELOW_LETTER: f32 = 8.0;
+/// Of a face whose normal reaches so little towards the viewer only its outline would be seen, as a spike.
+const EDGE_ON: f64 = 0.07;
 /// Edges and corners begin at this share of half a side.
 const EDGE: f32 = 0.55;
 
@@ -111,7 +113,7 @@ impl Cube {
     /// Faces that are seen: the axis they stand across, and on which side.
     fn faces(&self) -> impl Iterator<Item = (usize, i8)> {
         let faces = (0..3).flat_map(|axis| [(axis, 1), (axis, -1)]);
-        faces.filter(|&(axis, side)| f64::from(side) * self.axes[axis].z > 1e-3)
+        faces.filter(|&(axis, side)| f64::from(side) * self.axes[axis].z > EDGE_ON)
     }
 
     /// The direction from which the face, edge or corner at a place of the screen is seen upright.
@@ -249,6 +251,17 @@ mod tests {
             }
             assert_eq!(cube.direction_at(center + vec2(60.0, 0.0)), None);
         }
+    }
+
+    #[test]
+    fn faces_that_are_seen_from_their_edges_are_left_out() {
+        let n_faces = |angle: f64| {
+            let turn = nalgebra::Rotation3::from_axis_angle(&Vector3::y_axis(), angle.to_radians());
+            let axes = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| turn * axis);
+            let center = Pos2::ZERO;
+            Cube { center, axes }.faces().count()
+        };
+        assert_eq!([0.0, 1.0, 3.0, 10.0, 87.0].map(n_faces), [1, 1, 1, 2, 1]);
     }
 
     #[test]
