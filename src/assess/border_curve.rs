@@ -162,7 +162,7 @@ pub(super) fn curves_of(surface: &Surface) -> Vec<BorderCurve> {
     closed.map(border).collect()
 }
 
-/// Median distance of an outline's node from the middle between its neighbours; next to nothing along straight and
+/// Median distance, within the sheet, of an outline's node from the middle between its neighbours; next to nothing along straight and
 /// smoothly curved outlines, whatever folds and corners they have. Holes count only where there is no outline: a small
 /// one of a few nodes steps aside though it is cut clean.
 pub(super) fn ragged(borders: &[BorderCurve], unit: f64) -> f64 {
@@ -176,7 +176,10 @@ pub(super) fn ragged(borders: &[BorderCurve], unit: f64) -> f64 {
         for (i, p) in border.points.iter().enumerate() {
             let [before, after] = [(i + count - 1) % count, (i + 1) % count];
             let middle = nalgebra::center(&border.points[before], &border.points[after]);
-            steps.push(unit * (p - middle).norm());
+            let aside = p - middle;
+            // Out of the sheet a corrugated one waves, and a noisy one steps.
+            let normal = border.normals[i];
+            steps.push(unit * (aside - normal * aside.dot(&normal)).norm());
         }
     }
     steps.sort_unstable_by(f64::total_cmp);
@@ -227,5 +230,26 @@ mod tests {
         );
         let (direction, normal) = circle(0.4).directions(0, SMOOTHED);
         assert!(direction.y > 0.98 && normal == Vector3::z());
+    }
+
+    #[test]
+    fn waves_out_of_the_sheet_make_no_outline_ragged() {
+        let outline = |aside: fn(f64) -> Vector3| {
+            let way = |k: u32| if k.is_multiple_of(2) { 3.0 } else { -3.0 };
+            let node = |k: u32| Point3::new(5.0 * f64::from(k), 0.0, 0.0) + aside(way(k));
+            let points = (0..40).map(node).collect();
+            let curve = hole(points);
+            ragged(
+                &[BorderCurve {
+                    is_hole: false,
+                    ..curve
+                }],
+                1.0,
+            )
+        };
+        let waved = outline(|way| Vector3::new(0.0, 0.0, way));
+        assert!(waved < 1e-9, "{waved}");
+        let stepped = outline(|way| Vector3::new(0.0, way, 0.0));
+        assert!((stepped - 6.0).abs() < 1e-9, "{stepped}");
     }
 }

@@ -48,7 +48,7 @@ pub use uncertainty::{PartDirection, PoseUncertainty};
 pub use verdict::Verdict;
 pub use words::{as_well, beside, error_beside, fit_of_hand};
 
-use crate::geometry::Similarity;
+use crate::geometry::{Point3, Similarity, Vector3};
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{MatchOutcome, Surface};
 use decide::{Grounds, decide};
@@ -99,7 +99,8 @@ pub fn assess(
         shape: None,
     };
     // The ends of the part lie half a diagonal from its middle.
-    let most_scaled = tolerance.springback / (0.5 * target.measures().diagonal);
+    let most_bent = tolerance.springback / (0.5 * target.measures().diagonal);
+    let most_scaled = most_bent + scale_of_offset(target, shape.offset.unwrap_or(0.0));
     let mirrored = mirrored_statement([source, target], outcome, settings);
     monitor.check()?;
     let grounds = Grounds {
@@ -114,6 +115,28 @@ pub fn assess(
     assessment.shape = is_comparable.then_some(shape);
     monitor.progress("verify", 2, Some(2));
     Ok(assessment)
+}
+
+/// How far an offset of the sheets takes the scale of the pairs from 1: a tube is wider at its outer skin. O(triangles).
+fn scale_of_offset(surface: &Surface, offset: f64) -> f64 {
+    let (mesh, measures) = (surface.mesh(), surface.measures());
+    let outward = (0..mesh.n_triangles()).map(|triangle| {
+        let middle = Point3::from(
+            mesh.corners(triangle)
+                .map(|p| p.coords)
+                .iter()
+                .sum::<Vector3>()
+                / 3.0,
+        );
+        mesh.area_vector(triangle)
+            .dot(&(middle - measures.centroid))
+    });
+    let size_sq = measures.area * measures.principal_spread.norm_squared();
+    if size_sq > 0.0 {
+        (offset * outward.sum::<f64>() / size_sq).abs()
+    } else {
+        0.0
+    }
 }
 
 /// The two statements about an alternative, on the full meshes. O(border edges + nodes · log triangles).
@@ -132,5 +155,41 @@ pub fn assess_alternative(
             tolerance: tolerance.of_pose(shape.springback, settings.length_of_millimetre()),
         },
         shape,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::TriMesh;
+
+    /// A piece of a tube of radius 10 and length 40, of so many sides of 3°.
+    fn tube(n_sides: u32) -> Surface {
+        let n_along = 20;
+        let points = (0..=n_sides).flat_map(|i| {
+            let angle = f64::from(3 * i).to_radians();
+            (0..=n_along).map(move |j| {
+                let along = 40.0 * f64::from(j) / f64::from(n_along);
+                Point3::new(10.0 * angle.cos(), 10.0 * angle.sin(), along)
+            })
+        });
+        let up = n_along + 1;
+        let cells = (0..n_sides * n_along).map(|k| k / n_along * up + k % n_along);
+        let triangles = cells.flat_map(|a| [[a, a + up, a + 1], [a + 1, a + up, a + up + 1]]);
+        let mesh = TriMesh::new(points.collect(), triangles.collect()).unwrap();
+        Surface::new(&mesh, "tube").unwrap()
+    }
+
+    #[test]
+    fn an_offset_scales_a_tube_and_no_plate() {
+        // Radius over the mean square distance from the middle: 10² + 40² / 12.
+        let expected = 10.0 / (100.0 + 1600.0 / 12.0);
+        for offset in [1.0, -0.5] {
+            let of_tube = scale_of_offset(&tube(119), offset);
+            assert!((of_tube / offset.abs() - expected).abs() < 0.02 * expected);
+        }
+        let nearly_flat = scale_of_offset(&tube(3), 1.0);
+        assert!(nearly_flat < 1e-3, "{nearly_flat}");
+        assert_eq!(scale_of_offset(&tube(119), 0.0), 0.0);
     }
 }

@@ -1,7 +1,11 @@
 //! Do outlines and holes agree on where a part belongs? The holes of one version may all lie farther along than
 //! those of another, and where the surfaces leave the part free to slide, the pose follows them.
 
+use nalgebra::{Rotation3, SVector};
+
 use super::borders::{BorderPair, Borders, PairKind};
+use super::contact::Contacts;
+use super::evidence::PoseEvidence;
 use super::fit::Fit;
 use super::least_squares::NormalEquations;
 use super::trims::BorderApart;
@@ -18,13 +22,15 @@ const LEAST_SHIFT: f64 = 0.5;
 /// Fewer holes may have been pierced elsewhere.
 const LEAST_HOLES: usize = 3;
 
-/// How far the outline lies aside of the holes, if by more than `limit`; `None` where no shift explains how it lies.
-/// `fit` is that of the borders. O(places).
+/// How far the outline lies aside of the holes, if by more than `limit`; `None` where no shift explains how it lies, and
+/// where surfaces do not leave the part free to be shifted so: they agree with the holes then, and both sides were
+/// trimmed elsewhere. `fit` is that of the evidence. O(places).
 pub(super) fn outline_aside_of_holes(
-    borders: &Borders,
+    evidence: &PoseEvidence<'_>,
     fit: &Fit,
     limit: f64,
 ) -> Option<BorderApart> {
+    let borders = &evidence.borders;
     if fit.holes.len() < LEAST_HOLES {
         return None;
     }
@@ -34,11 +40,33 @@ pub(super) fn outline_aside_of_holes(
     let of_holes = of_holes / fit.holes.len() as f64;
     let along = shift.try_normalize(LEAST_SHIFT * limit)?;
     let by = (shift - of_holes).dot(&along);
-    if by <= limit || !outline.explained_by(&shift) {
+    let is_aside = by > limit && outline.explained_by(&shift);
+    if !is_aside || by * resistance(&evidence.contacts, &along) > limit {
         return None;
     }
     let at = outline.place_across(&along)?;
     Some(BorderApart { by, at })
+}
+
+/// How far surfaces come apart by a unit shift along this direction, root mean square, whatever other small motion
+/// goes with it.
+fn resistance(contacts: &Contacts, along: &Vector3) -> f64 {
+    let across = Rotation3::rotation_between(&Vector3::x(), along).unwrap_or_else(|| {
+        // Opposite directions.
+        Rotation3::from_axis_angle(&Vector3::z_axis(), std::f64::consts::PI)
+    });
+    let (mut equations, mut area, mut whole) = (NormalEquations::<6>::default(), 0.0, 0.0);
+    for contact in &contacts.list {
+        let normal = contact.normal;
+        let ways = across.inverse() * normal;
+        let turn = ((contact.point - contacts.center) / contacts.radius).cross(&normal);
+        let row = SVector::from([ways.x, ways.y, ways.z, turn.x, turn.y, turn.z]);
+        equations.add(&row, 0.0, contact.weight);
+        area += contact.weight;
+        whole += contact.weight * ways.x.powi(2);
+    }
+    let own = equations.imitated(0).own_share.max(0.0) * whole;
+    (own / area.max(f64::MIN_POSITIVE)).sqrt()
 }
 
 /// The places along the outlines of both parts, each with what is left of the distance across it.

@@ -332,7 +332,7 @@ impl ShapeStatement {
             });
         }
         let Some(by) = self.borders.offset.filter(|by| *by > limit) else {
-            let aside = outline_aside_of_holes(borders, fit, limit);
+            let aside = outline_aside_of_holes(evidence, fit, limit);
             reasons.extend(aside.map(|BorderApart { by, at }| ShapeReason::Borders {
                 by,
                 limit,

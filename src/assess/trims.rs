@@ -158,7 +158,7 @@ impl<'a> SplitOutlines<'a> {
     fn other_trim(&self, evidence: &PoseEvidence<'_>, limit: f64) -> Option<OtherTrim> {
         if self.share_apart() <= 1.0 - STATED
             || stretch::explains_outlines(evidence, limit)
-            || outline_aside_of_holes(self.borders, &self.fit, limit).is_some()
+            || outline_aside_of_holes(evidence, &self.fit, limit).is_some()
         {
             return None;
         }

@@ -1,7 +1,7 @@
 //! The pose of parts that were trimmed differently: outlines that end a few millimetres apart do not pull it aside.
 
 use super::context::PairContext;
-use crate::assess::borders::HOLES_THAT_HOLD;
+use crate::assess::borders::{HOLES_THAT_HOLD, PairKind};
 use crate::assess::contact::MAX_NODES;
 use crate::assess::evidence::{EvidenceSearch, PoseEvidence};
 use crate::assess::fit::Fit;
@@ -21,8 +21,8 @@ const LITTLE_LESS: f64 = 0.04;
 
 /// The pose without what outlines that lie apart do to it: a part that hardly holds along itself is pulled along, until
 /// the distances of its ends are alike. Surfaces, holes and the outlines that lie together determine where it belongs.
-/// `None` where the parts are not trimmed differently under the pose, where they have not two holes in common, where
-/// these come no closer, and where the surfaces alone, with their beads, contradict it: the holes of one version may
+/// `None` where the parts are not trimmed differently under the pose and no more of the outlines lie together under the
+/// other one, where they have not two holes in common, where these come no closer, and where the surfaces alone, with their beads, contradict it: the holes of one version may
 /// all have been moved. O(steps · (border edges + nodes · log triangles)).
 pub fn without_trims(
     context: &PairContext<'_>,
@@ -39,12 +39,12 @@ pub fn without_trims(
     };
     let before = Fitted::of(&evidence);
     let lies_on_holes = before.worst_hole <= evidence.borders.unremarkable();
-    if before.n_holes < HOLES_THAT_HOLD
-        || lies_on_holes
-        || trims::other_trim(&evidence, &tolerance).is_none()
-    {
+    if before.n_holes < HOLES_THAT_HOLD || lies_on_holes {
         return Ok(None);
     }
+    let limit = evidence.borders.limit(&tolerance);
+    let together = outlines_together(&evidence, limit);
+    let are_trimmed = trims::other_trim(&evidence, &tolerance).is_some();
     let little = LITTLE_GAP * tolerance.remainder;
     let fit_by_holes = |evidence: &mut PoseEvidence<'_>| {
         evidence.borders = match trims::other_trim(evidence, &tolerance) {
@@ -60,7 +60,10 @@ pub fn without_trims(
     let is_near = context.displacement(&moved, pose) <= distances.border_reach;
     let evidence = search.at(&moved).filter(|_| is_near);
     let is_closer = |met: &PoseEvidence<'_>| Fitted::of(met).is_closer_than(&before, little);
-    let Some(mut evidence) = evidence.filter(is_closer) else {
+    // A side that is longer pulls the part aside until both ends lie apart, as a trim does.
+    let has_outlines = |met: &PoseEvidence<'_>| outlines_together(met, limit) > together;
+    let is_better = |met: &PoseEvidence<'_>| is_closer(met) && (are_trimmed || has_outlines(met));
+    let Some(mut evidence) = evidence.filter(is_better) else {
         return Ok(None);
     };
     let fit = fit_by_holes(&mut evidence);
@@ -72,6 +75,14 @@ pub fn without_trims(
         left_with_beads(&evidence, &Fit::of_surfaces(&evidence)) + little < left
     });
     Ok((!contradict).then_some(moved))
+}
+
+/// Length of the outlines that lie beside others by no more than this, times an edge.
+fn outlines_together(evidence: &PoseEvidence<'_>, limit: f64) -> f64 {
+    let outlines = evidence.borders.pairs().iter();
+    let outlines = outlines.filter(|pair| pair.kind == PairKind::Outlines);
+    let together = outlines.filter(|pair| pair.gap.abs() <= limit);
+    together.map(|pair| pair.weight).sum()
 }
 
 /// What a fit leaves of the distances of the surfaces on all but a small share of them.
