@@ -133,6 +133,7 @@ impl AppState {
     /// Whatever changed, what the window shows of the distances follows.
     fn keep_measuring(&mut self) -> Vec<Effect> {
         let mut effects = Vec::new();
+        self.inspect.keep_distance(&self.document);
         let is_moving = self.moving.is_grabbed() || self.is_preview();
         let (shown, is_wanted) = (self.shown_pose(), self.wants_comparison());
         let is_part_open = self.is_part_open();
@@ -161,7 +162,7 @@ impl AppState {
             topics.moving.reject_tool(work);
             return Vec::new();
         }
-        if topics.pairs.tool.take().is_some() {
+        if topics.pairs.tool.take().is_some() || topics.inspect.distance.take().is_some() {
             return Vec::new();
         }
         if is_preview {

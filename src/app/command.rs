@@ -32,7 +32,7 @@ pub enum Command {
     Export(ExportCommand),
     /// What is shown and how.
     View(ViewCommand),
-    /// Distances, labels, section.
+    /// Deviation, labels, section, distances.
     Inspect(InspectCommand),
     /// Undo and redo.
     History(HistoryCommand),

@@ -73,6 +73,10 @@ pub(super) enum FollowUp {
     LookAt(Role, Point3),
     /// The section was turned on or off.
     SectionToggled,
+    /// A distance is to be measured: a click has this one meaning.
+    DistanceBegun,
+    /// Pairs of points are to be picked: a click has this one meaning.
+    PairsBegun,
     /// The document is that of another step; the parts lay there before.
     SteppedInHistory(Places),
     /// The project is to be written there, over the one that was saved at that time.
@@ -125,6 +129,8 @@ impl AppState {
                 self.with_scene(|view, scene| view.keep_whole(Role::Stamped, scene));
             }
             FollowUp::SectionToggled => self.show_section(),
+            FollowUp::DistanceBegun => self.pairs.tool = None,
+            FollowUp::PairsBegun => self.inspect.distance = None,
             FollowUp::Mapped => {
                 self.view.sections.arrange();
                 // Whoever looks at distances or at parts wants to see what came of the mapping.

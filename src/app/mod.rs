@@ -49,7 +49,7 @@ pub use export::{
 };
 pub use history::{GestureId, History, HistoryCommand, HistoryRow, StepKind};
 pub use inspect::{
-    Coloring, Freshness, InspectCommand, InspectState, Label, LookedAt, SectionView,
+    Coloring, DistanceTool, Freshness, InspectCommand, InspectState, Label, LookedAt, SectionView,
 };
 pub use job_board::{JobBoard, RunningJob};
 pub use log::{

@@ -40,7 +40,7 @@ pub struct AppState {
     pub moving: MovingState,
     /// Picked pairs of points.
     pub pairs: PairsState,
-    /// Deviation and section.
+    /// Deviation, section and distances.
     pub inspect: InspectState,
     /// What is shown and how.
     pub view: ViewState,

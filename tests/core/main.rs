@@ -17,6 +17,7 @@ mod cancel;
 mod cli;
 mod deck_out;
 mod deviation;
+mod distance;
 mod drawn_pan;
 mod explain;
 mod exports;

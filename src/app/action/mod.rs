@@ -7,6 +7,7 @@ mod file;
 mod help;
 mod match_;
 mod row;
+mod section;
 mod shortcut;
 mod view;
 
@@ -199,6 +200,10 @@ actions! {
     ToggleUncertainty,
     /// Measure the deviation again.
     UpdateDeviation,
+    /// Measure between two points, or end it.
+    MeasureDistance,
+    /// The measured distance on the clipboard.
+    CopyDistance,
     /// Colours of the mapped values.
     ShowMapped,
     /// Colours of mapped less stamped.
@@ -383,6 +388,7 @@ impl Action {
             Self::ToggleDeviation => state.shown_colors() == ColorBy::Deviation,
             Self::ToggleOverlap => state.shown_colors() == ColorBy::Overlap,
             Self::ToggleUncertainty => state.shown_colors() == ColorBy::Uncertainty,
+            Self::MeasureDistance => state.inspect.distance.is_some(),
             Self::ToggleSection => state.inspect.section.is_on,
             Self::ToggleSectionClip => state.inspect.section.is_clipped,
             Self::ToggleProjection => {

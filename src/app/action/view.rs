@@ -5,12 +5,11 @@ use super::conditions::{
 };
 use super::row::keys::{ctrl, ctrl_digit, digit, function, key, shift};
 use super::row::some;
-use super::{Action, ActionRow, Key, Keys, MenuGroup, Reason, Shortcut};
+use super::{Action, ActionRow, Key, Keys, MenuGroup, Reason, Shortcut, section};
 use crate::app::{
-    AppState, ColorBy, Command, Display, InspectCommand, MapCommand, MapPicture, SectionView,
+    AppState, ColorBy, Command, Display, ExportCommand, InspectCommand, MapCommand, MapPicture,
     Settings, ShownGeometry, ViewCommand,
 };
-use crate::geometry::Vector3;
 use crate::geometry::camera::{OrbitStyle, StandardView};
 
 pub(super) const GROUPS: &[MenuGroup] = &[
@@ -18,7 +17,7 @@ pub(super) const GROUPS: &[MenuGroup] = &[
     MenuGroup::submenu("Display", DISPLAY),
     MenuGroup::submenu("Inspect", INSPECT),
     MenuGroup::submenu("Mapping", MAPPING),
-    MenuGroup::submenu("Section", SECTION),
+    MenuGroup::submenu("Section", section::ROWS),
     MenuGroup::submenu("Camera", CAMERA),
     MenuGroup::plain(WINDOW),
 ];
@@ -165,6 +164,32 @@ const INSPECT: &[ActionRow] = &[
         enabled: |state| state.document.has_both_parts(),
         command: |_| some(InspectCommand::Update),
     },
+    ActionRow {
+        action: Action::MeasureDistance,
+        label: "Measure distance",
+        tooltip: "Measure between two points that are clicked in a 3D window",
+        keys: Keys::press(&[key('I')]),
+        enabled: |state| state.document.has_any_part(),
+        command: |_| some(InspectCommand::ToggleDistance),
+    },
+    ActionRow {
+        action: Action::CopyDistance,
+        label: "Copy distance",
+        tooltip: "Copy the measured distance with its components along the axes",
+        keys: Keys::NONE,
+        enabled: |state| {
+            let is_measured = state.measured_distance().is_some();
+            require(
+                is_measured,
+                "Measure the distance between two points first.",
+            )
+        },
+        command: |state| {
+            let text = state.measured_distance()?.join(", ");
+            let what = "Distance".to_owned();
+            some(ExportCommand::CopyText { text, what })
+        },
+    },
 ];
 
 const MAPPING: &[ActionRow] = &[
@@ -271,81 +296,6 @@ const MAPPING: &[ActionRow] = &[
         keys: Keys::NONE,
         enabled: is_probed,
         command: |_| some(MapCommand::Probe(None)),
-    },
-];
-
-const SECTION: &[ActionRow] = &[
-    ActionRow {
-        action: Action::ToggleSection,
-        label: "Section",
-        tooltip: "Cut both parts with a plane and show their outlines",
-        keys: Keys::press(&[key('S')]),
-        enabled: |state| state.document.has_any_part(),
-        command: |state| some(InspectCommand::SetSection(toggled(state))),
-    },
-    ActionRow {
-        action: Action::ToggleSectionClip,
-        label: "Cut away one half",
-        tooltip: "Hide what lies in front of the section plane",
-        keys: Keys::press(&[shift('S')]),
-        enabled: |state| state.document.has_any_part(),
-        command: |state| {
-            some(InspectCommand::SetSection(SectionView {
-                is_clipped: !state.inspect.section.is_clipped,
-                ..across(state, &section_normal(state))
-            }))
-        },
-    },
-    ActionRow {
-        action: Action::SectionX,
-        label: "Section across X",
-        tooltip: "Section plane normal to x",
-        keys: Keys::NONE,
-        enabled: |state| state.document.has_any_part(),
-        command: |state| section_across(state, &Vector3::x()),
-    },
-    ActionRow {
-        action: Action::SectionY,
-        label: "Section across Y",
-        tooltip: "Section plane normal to y",
-        keys: Keys::NONE,
-        enabled: |state| state.document.has_any_part(),
-        command: |state| section_across(state, &Vector3::y()),
-    },
-    ActionRow {
-        action: Action::SectionZ,
-        label: "Section across Z",
-        tooltip: "Section plane normal to z",
-        keys: Keys::NONE,
-        enabled: |state| state.document.has_any_part(),
-        command: |state| section_across(state, &Vector3::z()),
-    },
-    ActionRow {
-        action: Action::SectionView,
-        label: "Section across the view",
-        tooltip: "Section plane facing the viewer",
-        keys: Keys::NONE,
-        enabled: |state| state.document.has_any_part(),
-        command: |state| {
-            let camera = state.view.cameras.get(state.view.focus);
-            section_across(state, &-camera.forward())
-        },
-    },
-    ActionRow {
-        action: Action::SectionForward,
-        label: "Section forward",
-        tooltip: "Move the section plane by a tenth of an element along its normal",
-        keys: Keys::press(&[Shortcut::shift(Key::PageUp)]),
-        enabled: has_section,
-        command: |state| section_moved(state, 1.0),
-    },
-    ActionRow {
-        action: Action::SectionBack,
-        label: "Section back",
-        tooltip: "Move the section plane back by a tenth of an element",
-        keys: Keys::press(&[Shortcut::shift(Key::PageDown)]),
-        enabled: has_section,
-        command: |state| section_moved(state, -1.0),
     },
 ];
 
@@ -518,11 +468,6 @@ fn is_probed(state: &AppState) -> Result<(), Reason> {
     require(is_probed, "No element of a mapping is probed.")
 }
 
-fn has_section(state: &AppState) -> Result<(), Reason> {
-    state.document.has_any_part()?;
-    require(state.inspect.section.is_on, "Show the section first.")
-}
-
 /// The picture with one choice changed.
 fn shown_with(state: &AppState, change: impl FnOnce(&mut Display)) -> Option<Command> {
     let mut display = state.view.display.clone();
@@ -552,36 +497,6 @@ fn toggle_line(line: &mut Option<f32>) {
         None => Some(0.5),
         Some(_) => None,
     };
-}
-
-/// What the section plane is normal to now, or would be.
-fn section_normal(state: &AppState) -> Vector3 {
-    let plane = state.inspect.section.plane;
-    plane
-        .unwrap_or_else(|| state.default_section_plane())
-        .normal
-}
-
-fn toggled(state: &AppState) -> SectionView {
-    let section = state.inspect.section;
-    section.toggled(|| state.default_section_plane())
-}
-
-fn across(state: &AppState, normal: &Vector3) -> SectionView {
-    let section = state.inspect.section;
-    section.across(normal, || state.default_section_plane())
-}
-
-fn section_across(state: &AppState, normal: &Vector3) -> Option<Command> {
-    some(InspectCommand::SetSection(across(state, normal)))
-}
-
-fn section_moved(state: &AppState, n_steps: f64) -> Option<Command> {
-    let section = state
-        .inspect
-        .section
-        .moved(n_steps * state.document.section_step())?;
-    some(InspectCommand::SetSection(section))
 }
 
 fn look(state: &AppState, view: StandardView) -> Option<Command> {

@@ -1,4 +1,4 @@
-//! What deviation, overlap, section and labels change.
+//! What deviation, overlap, section, labels and distances change.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -53,6 +53,8 @@ impl InspectState {
                 });
                 work.follow(FollowUp::LookAt(role, point));
             }
+            InspectCommand::ToggleDistance => self.toggle_distance(work),
+            InspectCommand::MeasureTo(role, point) => self.measure_to(work.document, role, point),
             InspectCommand::SetSection(section) => {
                 if self.section.is_on != section.is_on {
                     work.follow(FollowUp::SectionToggled);

@@ -1,11 +1,11 @@
-//! What can happen to deviation, section and labels.
+//! What can happen to deviation, section, labels and the distance between two points.
 
 use super::SectionView;
 use crate::app::GestureId;
 use crate::geometry::Point3;
 use crate::role::Role;
 
-/// What becomes of labels, and what is looked at.
+/// What becomes of labels, what is looked at, and what is measured.
 #[derive(Debug, Clone, PartialEq)]
 pub enum InspectCommand {
     /// Measure the deviation at the shown pose.
@@ -34,6 +34,10 @@ pub enum InspectCommand {
         /// What is said about it where it is marked.
         text: String,
     },
+    /// Begin to measure between two points, or end it.
+    ToggleDistance,
+    /// Measure from or to a point of the part's own frame.
+    MeasureTo(Role, Point3),
     /// The section plane, as a whole.
     SetSection(SectionView),
 }

@@ -1,12 +1,15 @@
-//! How far the parts lie apart: what is measured, how it is coloured, labels and the section plane.
+//! How far the parts lie apart: what is measured, how it is coloured, labels and the section plane. Distances between
+//! two points.
 
 mod apply;
 mod coloring;
 mod command;
+mod distance;
 mod section;
 
 pub use coloring::Coloring;
 pub use command::InspectCommand;
+pub use distance::DistanceTool;
 pub use section::SectionView;
 
 use super::{AppState, BottomTab, ColorBy, Document, OfParts, Shared};
@@ -57,11 +60,13 @@ pub struct LookedAt {
     pub text: String,
 }
 
-/// The comparison of both parts and the section plane.
+/// The comparison of both parts, the section plane and the distance between two points.
 #[derive(Debug, Clone, Default)]
 pub struct InspectState {
     /// The section plane.
     pub section: SectionView,
+    /// The tool that measures between two points, while it is on.
+    pub distance: Option<DistanceTool>,
     /// The last comparison of both parts, up to date or not.
     pub compared: Option<OfParts<Shared<Comparison>>>,
     /// The place that was looked at last; marked until something else is.

@@ -1,6 +1,7 @@
 //! What picking, changing and fitting of point pairs change.
 
 use super::{PairCommand, PairTool, PairsState, PickedPoint, PointPair, place_of};
+use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
 use crate::app::{LogStep, NoticeLevel};
 use crate::role::Role;
@@ -40,6 +41,9 @@ impl PairsState {
         let can = work.document.has_both_parts().is_ok() && work.is_unlocked().is_ok();
         self.tool = (!is_on && can).then(PairTool::default);
         work.previews.drop_all();
+        if self.tool.is_some() {
+            work.follow(FollowUp::PairsBegun);
+        }
     }
 
     fn forget_repick(&mut self) {
@@ -80,6 +84,7 @@ impl PairsState {
             self.tool = Some(PairTool {
                 repick: Some((pair, role)),
             });
+            work.follow(FollowUp::PairsBegun);
         }
     }
 }

@@ -4,7 +4,8 @@ use egui::{Pos2, Rect, Response};
 
 use super::navigation::{pixel_of, screen_of};
 use super::picture::Picture;
-use crate::app::AppState;
+use super::visible_parts::free_window;
+use crate::app::{AppState, FreeWindow};
 use crate::geometry::camera::ScreenSize;
 use crate::geometry::{Camera, Point3, Similarity};
 use crate::role::Role;
@@ -58,6 +59,11 @@ impl FrameContext<'_> {
     /// The pivot that was picked for its camera.
     pub fn pivot(&self) -> Option<Point3> {
         *self.state.view.pivot.get(self.camera_role())
+    }
+
+    /// True where the stamped part is shown at another pose than in the left window.
+    pub fn shows_other_pose(&self) -> bool {
+        free_window(self.state, self.view) == Some(FreeWindow::Alternative)
     }
 
     /// Whose camera it shows.

@@ -1,11 +1,11 @@
-//! Picking pairs of points: what the pointer snaps to, and the click that takes it.
+//! Picking points for pairs and distances: what the pointer snaps to, and the click that takes it.
 
 use egui::{Pos2, Rect};
 
 use super::frame::FrameContext;
 use super::navigation::{pixel_of, pos_of, screen_of};
 use super::picture::Hit;
-use crate::app::{Command, NoticeCommand, PairCommand, PickKind, PickedPoint};
+use crate::app::{Command, InspectCommand, NoticeCommand, PairCommand, PickKind, PickedPoint};
 use crate::geometry::{Camera, Point3};
 use crate::role::Role;
 
@@ -52,7 +52,54 @@ struct Landmark {
 
 /// What lies under the pointer; a click takes it.
 pub(super) fn update(frame: &FrameContext<'_>, commands: &mut Vec<Command>) -> Option<Pick> {
+    if frame.state.inspect.distance.is_some() {
+        return measure(frame, commands);
+    }
     PointPicker(frame).update(commands)
+}
+
+/// The point that a click would measure from or to.
+fn measure(frame: &FrameContext<'_>, commands: &mut Vec<Command>) -> Option<Pick> {
+    let end = distance_end(frame)?;
+    if frame.response.clicked() {
+        commands.push(match end {
+            Ok(Pick { role, picked, .. }) => InspectCommand::MeasureTo(role, picked.point).into(),
+            Err(why) => NoticeCommand::Explain(why.to_owned()).into(),
+        });
+    }
+    end.ok()
+}
+
+/// The node next to the pointer, or else the point of the sheet below it; why none can be taken there.
+fn distance_end(frame: &FrameContext<'_>) -> Option<Result<Pick, &'static str>> {
+    let pos = frame.response.hover_pos()?;
+    let (rect, camera) = (frame.rect(), &frame.view.camera);
+    let hit = frame
+        .picture
+        .hit(camera, frame.pixel(pos), frame.screen())?;
+    let is_first_here = |(role, _): &(Role, Point3)| frame.picture.place_of(*role).is_some();
+    let ends = frame.state.distance_ends();
+    if hit.further.is_some() {
+        return Some(Err(
+            "Distances are measured on the crash part and the first stamped part",
+        ));
+    }
+    if frame.shows_other_pose() {
+        return Some(Err(
+            "The stamped part is shown at another pose here: measure in the left window",
+        ));
+    }
+    if ends.len() == 1 && !ends.iter().all(is_first_here) {
+        return Some(Err(
+            "The first point lies in the other window: Move over shows both parts in one",
+        ));
+    }
+    let role = hit.role;
+    let place = frame.picture.place_of(role)?;
+    let Candidate { at, point, kind } = snapped(rect, camera, pos, &hit)?;
+    let point = place.to_part(&point);
+    let picked = PickedPoint { point, kind };
+    Some(Ok(Pick { role, picked, at }))
 }
 
 /// Picking in one frame.

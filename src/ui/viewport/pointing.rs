@@ -36,7 +36,7 @@ impl Pointing {
             commands.push(PartCommand::Hover(part).into());
         }
         if frame.state.moving.tool.is_none() {
-            if frame.state.pairs.tool.is_none() {
+            if !frame.state.is_picking() {
                 self.click(ui, frame, hit.as_ref(), commands);
             }
             if frame.response.secondary_clicked() {

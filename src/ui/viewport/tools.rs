@@ -103,7 +103,7 @@ impl Tools {
             None => self.modal = None,
         }
         // While points are picked, a click on a handle is meant for the part below it.
-        let is_free = tool.is_none() && frame.state.pairs.tool.is_none();
+        let is_free = tool.is_none() && !frame.state.is_picking();
         let is_wanted = frame.state.moving.has_gizmo && is_free && has_stamped(frame);
         let can_move = frame.state.can_move().is_ok() && !frame.state.is_preview();
         self.has_gizmo = is_wanted && (can_move || self.gizmo.is_dragging());

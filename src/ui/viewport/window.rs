@@ -207,7 +207,9 @@ pub(super) fn summary(state: &AppState, role: Role) -> String {
     let view = camera.standard_view().map_or_else(String::new, |view| {
         format!(", {} view", view.label().to_lowercase())
     });
-    format!("{name}, {triangles}{with}{view}")
+    let prompt = state.distance_prompt();
+    let prompt = prompt.map_or_else(String::new, |prompt| format!(". {prompt}"));
+    format!("{name}, {triangles}{with}{view}{prompt}")
 }
 
 #[cfg(test)]

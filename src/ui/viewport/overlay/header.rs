@@ -255,6 +255,7 @@ fn passing_notes(over: &Overlay<'_>) -> Vec<String> {
     {
         notes.push(tool.modal.header(&tool.frame));
     }
+    notes.extend(state.distance_prompt().map(str::to_owned));
     if is_left {
         notes.extend(preview(over));
     }

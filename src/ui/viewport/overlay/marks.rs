@@ -383,12 +383,13 @@ pub(super) fn probe(ui: &Ui, over: &Overlay<'_>) {
 }
 
 /// A ring that is seen on any ground.
-fn ring(painter: &Painter, over: &Overlay<'_>, at: Pos2, radius: f32) {
+pub(super) fn ring(painter: &Painter, over: &Overlay<'_>, at: Pos2, radius: f32) {
     painter.circle_stroke(at, radius, Stroke::new(3.0, over.frame.look.plate));
     painter.circle_stroke(at, radius, Stroke::new(1.5, over.frame.look.tool));
 }
 
-fn ringed_line(painter: &Painter, over: &Overlay<'_>, ends: [Pos2; 2]) {
+/// A line that is seen on any ground.
+pub(super) fn ringed_line(painter: &Painter, over: &Overlay<'_>, ends: [Pos2; 2]) {
     painter.line_segment(ends, Stroke::new(4.0, over.frame.look.plate));
     painter.line_segment(ends, Stroke::new(1.5, over.frame.look.tool));
 }

@@ -4,6 +4,7 @@ mod apart;
 mod banner;
 mod cards;
 mod cube;
+mod distance;
 mod divider;
 mod free;
 mod freedom;
@@ -46,7 +47,7 @@ pub(super) struct Overlay<'a> {
     pub summary: Option<Summary>,
     /// What the handle under the pointer does.
     pub hint: Option<String>,
-    /// What a click would pick for a pair of points.
+    /// What a click would pick for a pair of points or a distance.
     pub pick: Option<Pick>,
     /// The part is there but not yet its mesh.
     pub is_preparing: bool,
@@ -84,6 +85,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     pairs::next(ui, over);
     section::handle(ui, over, commands);
     labels::show(ui, over, commands);
+    distance::show(ui, over);
     let legend = legend::show(ui, over, commands);
     marks::show(ui, over, legend);
     cube::show(ui, over, commands);

@@ -81,7 +81,7 @@ pub(super) fn next(ui: &Ui, over: &Overlay<'_>) {
 }
 
 /// A cross with a gap in its middle, so that the place itself stays seen.
-fn crosshair(painter: &Painter, over: &Overlay<'_>, at: Pos2) {
+pub(super) fn crosshair(painter: &Painter, over: &Overlay<'_>, at: Pos2) {
     for (width, color) in [(4.0, over.frame.look.plate), (1.5, over.frame.look.tool)] {
         let stroke = Stroke::new(width, color);
         for way in [

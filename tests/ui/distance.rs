@@ -1,0 +1,66 @@
+//! Distances clicked with the mouse in a 3D window.
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use shapematch::role::Role;
+use shapematch::ui::Shell;
+
+use super::layout::texts;
+use super::pairs::click_in;
+use super::story::{click, finish, window};
+
+/// What a screen reader is told of the distance in the picture.
+fn told(window: &Harness<'static, Shell>) -> Vec<String> {
+    let all = window.query_all_by(|node| {
+        let text = node.value().or_else(|| node.label());
+        text.is_some_and(|text| text.starts_with("Distance "))
+    });
+    let text = |node: egui_kittest::Node<'_>| {
+        let node = node.accesskit_node();
+        node.value().or_else(|| node.label())
+    };
+    all.filter_map(text).collect()
+}
+
+fn is_painted(window: &Harness<'static, Shell>, text: &str) -> bool {
+    texts(window).iter().any(|painted| painted.text == text)
+}
+
+#[test]
+fn two_clicks_draw_a_distance_and_escape_takes_it_away() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    window.key_press(egui::Key::I);
+    window.run_steps(2);
+    assert!(is_painted(&window, "Click the first point"));
+    click_in(&mut window, Role::Crash, [-60.0, -50.0].into());
+    assert_eq!(window.state().state().distance_ends().len(), 1);
+    assert!(is_painted(&window, "Click the second point"));
+    // The line follows the pointer before the second click.
+    let first = window.get_by(|node| {
+        let label = node.label();
+        label.is_some_and(|label| label.starts_with("Crash part"))
+    });
+    let pos = first.rect().center() + egui::vec2(20.0, 10.0);
+    window.event(egui::Event::PointerMoved(pos));
+    window.run_steps(2);
+    assert_eq!(told(&window).len(), 1);
+    assert_eq!(window.state().state().measured_distance(), None);
+    // Only a point of the same window belongs to it.
+    click_in(&mut window, Role::Stamped, [0.0, 0.0].into());
+    assert_eq!(window.state().state().distance_ends().len(), 1);
+    click_in(&mut window, Role::Crash, [70.0, 40.0].into());
+    let state = window.state().state();
+    let [length, axes] = state.measured_distance().expect("a distance");
+    assert_eq!(told(&window), [format!("Distance {length}, {axes}")]);
+    assert!(is_painted(&window, &length), "{length}");
+    assert!(is_painted(&window, &axes), "{axes}");
+    let [from, to] = [0, 1].map(|n| state.distance_ends()[n].1);
+    assert_eq!(length, state.lengths().of((to - from).norm()));
+    assert!(state.parts.selected.is_empty(), "a point is no selection");
+    window.key_press(egui::Key::Escape);
+    window.run_steps(2);
+    assert_eq!(window.state().state().inspect.distance, None);
+    assert_eq!(told(&window), [] as [String; 0]);
+}
