@@ -27,6 +27,35 @@ fn is_painted(window: &Harness<'static, Shell>, text: &str) -> bool {
 }
 
 #[test]
+fn a_double_click_is_one_point() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    window.key_press(egui::Key::I);
+    let off = [-60.0, -50.0].into();
+    click_in(&mut window, Role::Crash, off);
+    let pos = window.ctx.input(|i| i.pointer.latest_pos());
+    let pos = pos.expect("the pointer");
+    let button = |pressed| egui::Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: egui::Modifiers::NONE,
+    };
+    // The first of two quick clicks comes long after the click before it.
+    for n_points in [2, 1] {
+        window.run_steps(4);
+        for _ in 0..2 {
+            let events = [true, false].map(button);
+            window.input_mut().events.extend(events);
+            window.step();
+        }
+        window.run_steps(2);
+        assert_eq!(window.state().state().distance_ends().len(), n_points);
+    }
+}
+
+#[test]
 fn two_clicks_draw_a_distance_and_escape_takes_it_away() {
     let mut window = window();
     click(&mut window, "Open the example pair");

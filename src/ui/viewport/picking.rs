@@ -61,7 +61,11 @@ pub(super) fn update(frame: &FrameContext<'_>, commands: &mut Vec<Command>) -> O
 /// The point that a click would measure from or to.
 fn measure(frame: &FrameContext<'_>, commands: &mut Vec<Command>) -> Option<Pick> {
     let end = distance_end(frame)?;
-    if frame.response.clicked() {
+    let last = frame.state.distance_ends().pop();
+    let is_last = |pick: &Pick| last == Some((pick.role, pick.picked.point));
+    // A double click is one point, not two in one place.
+    let is_repeated = frame.response.double_clicked() && end.as_ref().is_ok_and(is_last);
+    if frame.response.clicked() && !is_repeated {
         commands.push(match end {
             Ok(Pick { role, picked, .. }) => InspectCommand::MeasureTo(role, picked.point).into(),
             Err(why) => NoticeCommand::Explain(why.to_owned()).into(),
