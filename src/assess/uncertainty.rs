@@ -376,7 +376,12 @@ mod tests {
                 let x = 5.0 * f64::from(i) - 150.0;
                 let turn = std::f64::consts::PI * f64::from(j) / f64::from(m);
                 let radius = 40.0 + slope * x * x / 150.0 + noise * random();
-                points.push(Point3::new(x, -radius * turn.cos(), -radius * turn.sin()));
+                let along = x + noise * random();
+                points.push(Point3::new(
+                    along,
+                    -radius * turn.cos(),
+                    -radius * turn.sin(),
+                ));
             }
         }
         let cells = (0..n).flat_map(|i| (0..m).map(move |j| i * (m + 1) + j));

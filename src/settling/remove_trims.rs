@@ -60,9 +60,13 @@ pub fn without_trims(
     let is_near = context.displacement(&moved, pose) <= distances.border_reach;
     let evidence = search.at(&moved).filter(|_| is_near);
     let is_closer = |met: &PoseEvidence<'_>| Fitted::of(met).is_closer_than(&before, little);
-    // A side that is longer pulls the part aside until both ends lie apart, as a trim does.
-    let has_outlines = |met: &PoseEvidence<'_>| outlines_together(met, limit) > together;
-    let is_better = |met: &PoseEvidence<'_>| is_closer(met) && (are_trimmed || has_outlines(met));
+    // A side that is longer pulls the part aside until both ends lie apart; where it belongs only that side does.
+    let has_one_longer_side = |met: &PoseEvidence<'_>| {
+        let has_more_together = outlines_together(met, limit) > together;
+        has_more_together && trims::other_trim(met, &tolerance).is_some()
+    };
+    let is_trimmed = |met: &PoseEvidence<'_>| are_trimmed || has_one_longer_side(met);
+    let is_better = |met: &PoseEvidence<'_>| is_closer(met) && is_trimmed(met);
     let Some(mut evidence) = evidence.filter(is_better) else {
         return Ok(None);
     };
