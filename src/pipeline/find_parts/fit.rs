@@ -14,8 +14,8 @@ const WELL_COVERED: f64 = 0.8;
 const MORE_COVERED: f64 = 0.15;
 /// Surfaces that differ by so many tolerances are hardly those of one part,
 const HARDLY_ONE_SHAPE: f64 = 2.0;
-/// and none is right if so many signs say so: parts of other shapes that lie at most so many times as far apart, and
-/// another gauge.
+/// and none is right if so many signs say so: parts of other shapes that lie at most so many times as far apart or
+/// differ as little, and another gauge.
 const SIGNS: usize = 2;
 const NO_CLOSER: f64 = 1.5;
 /// Forming changes the mean thickness by less.
@@ -117,9 +117,10 @@ impl Presence {
         if fit.remainder <= HARDLY_ONE_SHAPE {
             return Self::Likely;
         }
+        let is_close = |other: &Fit| other.rmse <= NO_CLOSER * fit.rmse;
         let close = other_shapes
             .iter()
-            .filter(|(_, other)| other.rmse <= NO_CLOSER * fit.rmse);
+            .filter(|(_, other)| is_close(other) || other.is_as_close_as(fit));
         let mut parts = vec![best];
         parts.extend(close.map(|(id, _)| *id));
         let gauge = gauge.filter(|gauge| !SAME_GAUGE.contains(gauge));
