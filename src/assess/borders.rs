@@ -341,12 +341,7 @@ impl Borders {
 
     /// Share of the smaller part's borders that lie beside borders of the other.
     pub(crate) fn share(&self) -> f64 {
-        let paired = self.pairs.iter().map(|p| p.weight).sum::<f64>() / self.edge;
-        if self.length > 0.0 {
-            paired / self.length
-        } else {
-            0.0
-        }
+        self.share_of(self.pairs.iter())
     }
 
     /// Share of the smaller part's borders that lies beside like borders of the other at no more than this distance,
@@ -357,7 +352,12 @@ impl Borders {
             .iter()
             .zip(left)
             .filter(|(pair, left)| pair.kind != PairKind::Mixed && left.abs() <= distance);
-        let length = within.map(|(pair, _)| pair.weight).sum::<f64>() / self.edge;
+        self.share_of(within.map(|(pair, _)| pair))
+    }
+
+    /// Share of the smaller part's borders that these pairs stand for.
+    fn share_of<'a>(&self, pairs: impl Iterator<Item = &'a BorderPair>) -> f64 {
+        let length = pairs.map(|pair| pair.weight).sum::<f64>() / self.edge;
         if self.length > 0.0 {
             length / self.length
         } else {

@@ -48,7 +48,7 @@ pub use uncertainty::{PartDirection, PoseUncertainty};
 pub use verdict::Verdict;
 pub use words::{as_well, beside, error_beside, fit_of_hand};
 
-use crate::geometry::{Point3, Similarity, Vector3};
+use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{MatchOutcome, Surface};
 use decide::{Grounds, decide};
@@ -120,16 +120,11 @@ pub fn assess(
 /// How far an offset of the sheets takes the scale of the pairs from 1: a tube is wider at its outer skin. O(triangles).
 fn scale_of_offset(surface: &Surface, offset: f64) -> f64 {
     let (mesh, measures) = (surface.mesh(), surface.measures());
+    // All points of a triangle's plane lie equally far out.
     let outward = (0..mesh.n_triangles()).map(|triangle| {
-        let middle = Point3::from(
-            mesh.corners(triangle)
-                .map(|p| p.coords)
-                .iter()
-                .sum::<Vector3>()
-                / 3.0,
-        );
+        let [corner, ..] = mesh.corners(triangle);
         mesh.area_vector(triangle)
-            .dot(&(middle - measures.centroid))
+            .dot(&(corner - measures.centroid))
     });
     let size_sq = measures.area * measures.principal_spread.norm_squared();
     if size_sq > 0.0 {
@@ -161,7 +156,7 @@ pub fn assess_alternative(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::TriMesh;
+    use crate::geometry::{Point3, TriMesh};
 
     /// A piece of a tube of radius 10 and length 40, of so many sides of 3°.
     fn tube(n_sides: u32) -> Surface {

@@ -1,15 +1,13 @@
 //! Do outlines and holes agree on where a part belongs? The holes of one version may all lie farther along than
 //! those of another, and where the surfaces leave the part free to slide, the pose follows them.
 
-use nalgebra::{Rotation3, SVector};
-
 use super::borders::{BorderPair, Borders, PairKind};
 use super::contact::Contacts;
 use super::evidence::PoseEvidence;
 use super::fit::Fit;
 use super::least_squares::NormalEquations;
 use super::trims::BorderApart;
-use crate::geometry::{Point3, Vector3};
+use crate::geometry::{Matrix3, Plane, Point3, Vector3};
 
 /// A shift of the outline must explain this share of how far it lies apart, or it was trimmed elsewhere.
 const EXPLAINED: f64 = 0.75;
@@ -51,21 +49,21 @@ pub(super) fn outline_aside_of_holes(
 /// How far surfaces come apart by a unit shift along this direction, root mean square, whatever other small motion
 /// goes with it.
 fn resistance(contacts: &Contacts, along: &Vector3) -> f64 {
-    let across = Rotation3::rotation_between(&Vector3::x(), along).unwrap_or_else(|| {
-        // Opposite directions.
-        Rotation3::from_axis_angle(&Vector3::z_axis(), std::f64::consts::PI)
-    });
-    let (mut equations, mut area, mut whole) = (NormalEquations::<6>::default(), 0.0, 0.0);
+    // The shift's first number is that along the direction.
+    const ALONG: usize = 3;
+    let [right, up] = Plane::new(contacts.center, along).axes();
+    let axes = Matrix3::from_columns(&[*along, right, up]);
+    let mut equations = NormalEquations::<6>::default();
+    let (mut area, mut alone) = (0.0, 0.0);
     for contact in &contacts.list {
-        let normal = contact.normal;
-        let ways = across.inverse() * normal;
-        let turn = ((contact.point - contacts.center) / contacts.radius).cross(&normal);
-        let row = SVector::from([ways.x, ways.y, ways.z, turn.x, turn.y, turn.z]);
+        let mut row = contacts.row(&contact.point, &contact.normal);
+        let ways = axes.tr_mul(&contact.normal);
+        row.fixed_rows_mut::<3>(ALONG).copy_from(&ways);
         equations.add(&row, 0.0, contact.weight);
         area += contact.weight;
-        whole += contact.weight * ways.x.powi(2);
+        alone += contact.weight * row[ALONG].powi(2);
     }
-    let own = equations.imitated(0).own_share.max(0.0) * whole;
+    let own = equations.imitated(ALONG).own_share.max(0.0) * alone;
     (own / area.max(f64::MIN_POSITIVE)).sqrt()
 }
 

@@ -22,8 +22,9 @@ const LITTLE_LESS: f64 = 0.04;
 /// The pose without what outlines that lie apart do to it: a part that hardly holds along itself is pulled along, until
 /// the distances of its ends are alike. Surfaces, holes and the outlines that lie together determine where it belongs.
 /// `None` where the parts are not trimmed differently under the pose and no more of the outlines lie together under the
-/// other one, where they have not two holes in common, where these come no closer, and where the surfaces alone, with their beads, contradict it: the holes of one version may
-/// all have been moved. O(steps · (border edges + nodes · log triangles)).
+/// other one, where they have not two holes in common, where these come no closer, and where the surfaces alone, with
+/// their beads, contradict it: the holes of one version may all have been moved.
+/// O(steps · (border edges + nodes · log triangles)).
 pub fn without_trims(
     context: &PairContext<'_>,
     pose: &Similarity,
