@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::ambiguity::Ambiguity;
 use super::coverage::Coverage;
+use super::decide::decide_with;
 use super::free_motion::{FreeMotion, Freedom};
 use super::pose::PoseStatement;
 use super::reason::Reason;
@@ -52,6 +53,16 @@ impl Assessment {
         let reasons = self.reasons.iter();
         let others = reasons.filter(|reason| !matches!(reason, Reason::ReadErrors { .. }));
         others.map(Reason::severity).max().unwrap_or(Verdict::Good)
+    }
+
+    /// The same where other parts of the target's model, with these ids, fit the source about as well.
+    #[must_use]
+    pub fn beside_alike_parts(mut self, ids: &[u64]) -> Self {
+        if !ids.is_empty() {
+            let ids = ids.to_vec();
+            decide_with(&mut self, Reason::AlikeParts { ids });
+        }
+        self
     }
 
     /// How far the pose may be off, where that is known.

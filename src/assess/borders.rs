@@ -4,7 +4,7 @@
 use super::border_curve::{BorderCurve, Place, along, curves_of, ragged};
 use super::least_squares::{quantile, robust_weights};
 use super::tolerance::{ShapeTolerance, coarser_edge, is_source_smaller};
-use crate::geometry::{Point3, Similarity, Vector3};
+use crate::geometry::{Aabb, Point3, Similarity, Vector3};
 use crate::registration::Surface;
 use crate::search::{ClosestPoint, PointTree};
 
@@ -463,12 +463,22 @@ fn partners(of_source: &[Hole], of_target: &[Hole], near: f64) -> Vec<Option<usi
         let ratio = other.radius / hole.radius;
         ratio < SAME_RADIUS && ratio * SAME_RADIUS > 1.0
     };
+    // A perforated sheet has thousands, of which few lie near each other along any axis.
+    let bounds = Aabb::of_points(of_target.iter().map(|hole| &hole.center));
+    let axis = bounds.extents().imax();
+    let mut along: Vec<(f64, usize)> = (of_target.iter().enumerate())
+        .map(|(j, hole)| (hole.center[axis], j))
+        .collect();
+    along.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
     for (i, hole) in of_source.iter().enumerate() {
-        let alike = of_target.iter().enumerate();
-        let alike = alike.filter(|(_, other)| is_same_size(hole, other));
-        let off = alike.map(|(j, other)| ((other.center - hole.center).norm(), i, j));
-        pairs.extend(off.filter(|(off, ..)| *off < near.max(hole.radius)));
+        let (reach, at) = (near.max(hole.radius), hole.center[axis]);
+        let first = along.partition_point(|(other, _)| *other <= at - reach);
+        let beside = along[first..].iter();
+        let beside = beside.take_while(|(other, _)| *other < at + reach);
+        let alike = beside.filter(|(_, j)| is_same_size(hole, &of_target[*j]));
+        let off = alike.map(|&(_, j)| ((of_target[j].center - hole.center).norm(), i, j));
+        pairs.extend(off.filter(|(off, ..)| *off < reach));
     }
     pairs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
     let mut partners = vec![None; of_source.len()];

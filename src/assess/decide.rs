@@ -103,12 +103,26 @@ pub(super) fn decide(assessment: &mut Assessment, grounds: &Grounds<'_>) {
     assessment.reasons = reasons;
 }
 
+/// Adds a reason that the two parts alone do not give, and what follows from it.
+pub(super) fn decide_with(assessment: &mut Assessment, reason: Reason) {
+    let reasons = &mut assessment.reasons;
+    reasons.retain(|known| !matches!(known, Reason::InOrder { .. }));
+    if let Some(pose) = &mut assessment.pose {
+        pose.kind = pose.kind.max(pose_kind(std::slice::from_ref(&reason)));
+    }
+    assessment.verdict = assessment.verdict.max(reason.severity());
+    reasons.push(reason);
+    reasons.sort_by_key(|reason| std::cmp::Reverse(reason.severity()));
+}
+
 /// The statement about the pose that follows from the reasons.
 fn pose_kind(reasons: &[Reason]) -> PoseKind {
     let of = |reason: &Reason| match reason {
         Reason::EndedEarly { .. } => PoseKind::NotFound,
         Reason::Shape { .. } if reason.severity() == Verdict::Poor => PoseKind::NotFound,
-        Reason::EqualAlternative { .. } | Reason::NearAlternative { .. } => PoseKind::Ambiguous,
+        Reason::EqualAlternative { .. }
+        | Reason::NearAlternative { .. }
+        | Reason::AlikeParts { .. } => PoseKind::Ambiguous,
         Reason::Sliding { .. }
         | Reason::Uncertain { .. }
         | Reason::OthersNotSought

@@ -105,6 +105,11 @@ pub enum Reason {
         /// Equivalent poses, the result included.
         n_equivalent: usize,
     },
+    /// Other parts of the target's model fit the source about as well: which one is meant is not known.
+    AlikeParts {
+        /// Their ids.
+        ids: Vec<u64>,
+    },
     /// Only given poses were refined: another pose may fit as well.
     OthersNotSought,
     /// The user stopped the match before it converged.
@@ -158,6 +163,7 @@ impl Reason {
             | Self::Sliding { .. }
             | Self::NearAlternative { .. }
             | Self::EqualAlternative { .. }
+            | Self::AlikeParts { .. }
             | Self::OthersNotSought
             | Self::Stopped
             | Self::ReadErrors { .. } => Verdict::Check,

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::geometry::{Point3, Vector3};
 use crate::registration::{Termination, UnitGuess};
-use crate::text::{Lengths, counted, fixed, percent, vector};
+use crate::text::{Lengths, counted, fixed, parts_by_id, percent, vector};
 
 /// Rotations smaller than this are not mentioned.
 const NO_ROTATION: f64 = 3.0 * PI / 180.0;
@@ -98,6 +98,10 @@ impl Reason {
                 as_well(*score_ratio),
                 error_beside(*score_ratio),
                 counted(*n_equivalent, "pose")
+            ),
+            Self::AlikeParts { ids } => format!(
+                "the stamped part fits {} about as well: choose the part it belongs to",
+                parts_by_id(ids)
             ),
             Self::OthersNotSought => {
                 "only the given pose was refined: another one may fit as well".to_owned()

@@ -223,7 +223,7 @@ fn run_match(
             let (recipe, current) = (&asked.recipe, &asked.current);
             let mut run = match_parts(parts, reduced.as_ref(), recipe, current, monitor)?;
             if let Some(of_parts) = found {
-                run.alike_parts = of_parts.rivals;
+                run = run.beside_alike_parts(&of_parts.rivals);
                 run.times.find_ms = of_parts.took_ms;
                 run.times.total_ms += of_parts.took_ms;
             }

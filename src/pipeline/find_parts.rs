@@ -63,8 +63,7 @@ pub struct FoundParts {
 impl FoundParts {
     /// The match on them, with the time of the whole search and the ids of the other parts.
     pub fn run(&self) -> MatchRun {
-        let mut run = self.found.run.clone();
-        run.alike_parts.clone_from(&self.rivals);
+        let mut run = self.found.run.clone().beside_alike_parts(&self.rivals);
         run.times.find_ms = self.took_ms - run.times.total_ms;
         run.times.total_ms = self.took_ms;
         run

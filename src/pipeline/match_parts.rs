@@ -75,6 +75,15 @@ pub struct MatchRun {
 }
 
 impl MatchRun {
+    /// The same where the stamped part fits other crash parts, with these ids, about as well.
+    #[must_use]
+    pub fn beside_alike_parts(mut self, ids: &[u64]) -> Self {
+        let assessment = Arc::unwrap_or_clone(self.assessment);
+        self.assessment = Arc::new(assessment.beside_alike_parts(ids));
+        self.alike_parts = ids.to_vec();
+        self
+    }
+
     /// Its best pose, or one of its alternatives.
     pub fn pose(&self, alternative: Option<usize>) -> Option<Similarity> {
         match alternative {
@@ -227,7 +236,7 @@ pub fn with_alternative(
     Ok(MatchRun {
         crash_from_stamped: outcome.target_from_source,
         outcome: Arc::new(outcome),
-        assessment: Arc::new(assessment),
+        assessment: Arc::new(assessment.beside_alike_parts(&run.alike_parts)),
         alternative: Some(alternative),
         ..run.clone()
     })
@@ -248,7 +257,7 @@ pub fn judged_anew(
     let assessment = assess::assess(source, target, &run.outcome, &check, monitor)?;
     Ok(MatchRun {
         recipe,
-        assessment: Arc::new(assessment),
+        assessment: Arc::new(assessment.beside_alike_parts(&run.alike_parts)),
         ..run.clone()
     })
 }

@@ -76,12 +76,24 @@ impl PointTree {
         max_distance: f64,
         hint: Option<u32>,
     ) -> Option<NearestPoint> {
+        self.nearest_of(|_| true, query, max_distance, hint)
+    }
+
+    /// [`PointTree::nearest`] of the points that are `accepted`, by their indices.
+    pub fn nearest_of(
+        &self,
+        accepted: impl Fn(u32) -> bool,
+        query: &Point3,
+        max_distance: f64,
+        hint: Option<u32>,
+    ) -> Option<NearestPoint> {
         if !query.iter().all(|x| x.is_finite()) || max_distance.is_nan() || max_distance < 0.0 {
             return None;
         }
         let exact = |index: u32| {
             let distance_sq = (query - self.points[index as usize]).norm_squared();
-            (distance_sq.sqrt() <= max_distance).then_some(Nearest {
+            let is_near = distance_sq.sqrt() <= max_distance;
+            (is_near && accepted(index)).then_some(Nearest {
                 distance_sq,
                 id: index,
                 found: (),

@@ -66,6 +66,8 @@ const NO_GAP: f64 = 0.1;
 const SURELY_HELD: f64 = 0.9;
 /// With less than this the borders contradict a pose.
 const HARDLY_HELD: f64 = 0.5;
+/// A hole so many times as far off is misplaced.
+const MUCH_FARTHER: f64 = 2.0;
 /// Poses that are not refined yet may lie so many times as far apart as springback explains.
 const ROUGHLY: f64 = 2.0;
 /// Its surfaces may lie apart by [`AS_CLOSE`] times as much and so many tolerances more.
@@ -359,9 +361,8 @@ impl<'a> PoseComparison<'a> {
         let beats = |a: &Refined, b: &Refined| a.has_more_holes_than(b, self.remainder());
         let is_better = |other: &Refined| {
             // Another trim moves outlines, and no hole.
-            let misplaces_holes = result.n_holes >= other.n_holes
-                && result.worst_hole <= self.remainder()
-                && other.worst_hole > self.remainder();
+            let farthest = self.remainder().max(MUCH_FARTHER * result.worst_hole);
+            let misplaces_holes = result.n_holes >= other.n_holes && other.worst_hole > farthest;
             let more = result.held + result.grain.max(MORE_HELD);
             let is_chance = other.n_holes == 0 && other.held <= BY_CHANCE;
             let holds_more =

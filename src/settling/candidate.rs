@@ -17,8 +17,10 @@ pub(super) const LITTLE_LESS: f64 = 0.02;
 /// Where so much more of it meets, holes that have their counterpart besides are no accident.
 const MUCH_MORE_MET: f64 = 0.1;
 /// Where each part has a piece that the other lacks, a pose under which at least this share of the smaller part meets
-/// the other is as likely as one under which more does.
+/// the other is as likely as one under which more does, …
 pub(super) const LEAST_SHARED: f64 = 0.5;
+/// … and where even less does, this share of what meets under that one.
+const NEARLY_SHARED: f64 = 0.8;
 /// Lengths of so many tolerances are differences whatever the facets are and however the part is bent.
 const CLEARLY: f64 = 2.0;
 /// A piece of the smaller part lies much closer to the other part than the whole does under another pose if it lies apart
@@ -143,6 +145,8 @@ pub(super) struct Candidate {
     /// Whether each part has a piece that the other lacks, and hardly any of the smaller one lies neither on the other
     /// part nor beyond its borders.
     only_overhangs: bool,
+    /// Whether too little of it meets the other for one part.
+    hardly_meets: bool,
     /// How far the surfaces lie apart by a bend.
     bend: f64,
     /// How far they lie apart besides it.
@@ -189,6 +193,7 @@ impl Candidate {
             }),
             met: shape.met,
             only_overhangs: false,
+            hardly_meets: has(|reason| matches!(reason, ShapeReason::HardlyMet { .. })),
             bend: shape.springback,
             remainder: shape.remainder,
             off: (borders.offset)
@@ -206,9 +211,14 @@ impl Candidate {
     /// features may be shifted by one of them.
     pub(super) fn is_equal_partial_fit_beside(&self, other: &Self, distances: &Distances) -> bool {
         let is_as_close = |own: f64, other: f64| own <= distances.as_close_as(UNREMARKABLE, other);
+        // A piece of a piece is no other part for being small, and the more of a part that was not pierced yet meets the
+        // other, the more holes of that lie alone.
+        let n_differences = self.n_differences - usize::from(self.hardly_meets);
+        let is_unpierced = self.n_holes.max(other.n_holes) == 0;
         self.only_overhangs
-            && self.met >= LEAST_SHARED
-            && self.differs_no_more_than(other)
+            && self.met >= LEAST_SHARED.min(NEARLY_SHARED * other.met)
+            && n_differences <= other.n_differences
+            && (self.n_alone <= other.n_alone || is_unpierced)
             && is_as_close(self.bend, other.bend)
             && is_as_close(self.remainder, other.remainder)
     }
@@ -255,6 +265,13 @@ impl Candidate {
             && other.surfaces_differ
             && self.met >= LEAST_SHARED
             && self.apart_in_all() <= other.apart_in_all()
+    }
+
+    /// Whether nothing but surfaces distinguishes this pose from another one that as much meets under: a flange that
+    /// has opened differs under the right pose too.
+    pub(super) fn is_distinguished_by_surfaces_only(&self, other: &Self) -> bool {
+        let by_surfaces_only = |pose: &Self| pose.outlines_are_no_evidence && pose.n_holes == 0;
+        [self, other].into_iter().all(by_surfaces_only) && self.meets_as_much_as(other)
     }
 
     /// Whether as much of the smaller part meets the other as under another pose.
@@ -344,8 +361,9 @@ impl Evidence {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::assess::ShapeTolerance;
-    use crate::geometry::Point3;
+    use crate::assess::{AssessSettings, ShapeTolerance};
+    use crate::geometry::{Point3, TriMesh};
+    use crate::registration::Surface;
 
     fn candidate(reasons: &[ShapeReason]) -> Candidate {
         let tolerance = ShapeTolerance {
@@ -497,5 +515,65 @@ mod tests {
             ..at(0.1, 0.3, 0.97)
         };
         assert_eq!(near(&alone), None);
+    }
+
+    #[test]
+    fn a_smaller_piece_of_an_unpierced_part_is_as_likely() {
+        let points = [[0.0, 0.0, 0.0], [900.0, 0.0, 0.0], [0.0, 500.0, 0.0]].map(Point3::from);
+        let mesh = TriMesh::new(points.to_vec(), vec![[0, 1, 2]]).unwrap();
+        let plate = Surface::new(&mesh, "source").unwrap();
+        let distances = Distances::of(&plate, &plate, 1.0, &AssessSettings::default());
+        let piece = |met, n_alone, reasons: &[ShapeReason]| Candidate {
+            met,
+            n_alone,
+            only_overhangs: true,
+            bend: 0.6,
+            remainder: 0.1,
+            ..candidate(reasons)
+        };
+        let hardly = [ShapeReason::HardlyMet { share: 0.46 }];
+        let best = piece(0.55, 4, &[]);
+        let is_as_likely = |other: &Candidate| other.is_equal_partial_fit_beside(&best, &distances);
+        assert!(is_as_likely(&piece(0.46, 5, &hardly)));
+        assert!(is_as_likely(&piece(0.55, 4, &[])));
+        // Much less of the part, or a piece that does not only overhang.
+        assert!(!is_as_likely(&piece(0.4, 5, &hardly)));
+        let elsewhere = Candidate {
+            only_overhangs: false,
+            ..piece(0.46, 5, &hardly)
+        };
+        assert!(!is_as_likely(&elsewhere));
+        // A part with a hole that has its counterpart is pierced.
+        let pierced = Candidate {
+            n_holes: 1,
+            ..piece(0.46, 5, &hardly)
+        };
+        assert!(!is_as_likely(&pierced));
+    }
+
+    #[test]
+    fn a_flange_that_opened_does_not_rule_out_a_pose_by_itself() {
+        let bead = ShapeReason::Local {
+            by: 3.8,
+            limit: 1.0,
+            at: Point3::origin(),
+            is_end: false,
+        };
+        let at = |met, n_holes, reasons: &[ShapeReason]| Candidate {
+            met,
+            n_holes,
+            outlines_are_no_evidence: true,
+            ..candidate(reasons)
+        };
+        let winner = at(0.99, 0, &[]);
+        let by_surfaces = |other: Candidate| other.is_distinguished_by_surfaces_only(&winner);
+        assert!(by_surfaces(at(0.98, 0, &[bead])));
+        assert!(!by_surfaces(at(0.9, 0, &[bead])));
+        assert!(!by_surfaces(at(0.98, 2, &[bead])));
+        let by_outlines = Candidate {
+            outlines_are_no_evidence: false,
+            ..at(0.98, 0, &[bead])
+        };
+        assert!(!by_surfaces(by_outlines));
     }
 }

@@ -38,10 +38,11 @@ impl ChosenPose {
         outcome.alternatives = self.alternatives;
     }
 
-    /// A pose that takes the place of the result of `outcome`. Beside it come those that were found with it, the
-    /// result before, and its alternatives. Only one under which the shapes differ no more is as likely.
+    /// A pose that takes the place of `result`, that of `outcome`. Beside it come those that were found with it, the
+    /// result before, and its alternatives. Only one under which the shapes differ no more is as likely, or that
+    /// nothing but surfaces distinguishes from the winner.
     pub(super) fn in_place_of(
-        outcome: &MatchOutcome,
+        (outcome, result): (&MatchOutcome, &Candidate),
         winner: &Candidate,
         found_too: &[Candidate],
         source: &Surface,
@@ -51,9 +52,15 @@ impl ChosenPose {
             let other = as_likely(other.pose, outcome);
             if is_worse { beaten(other) } else { other }
         });
-        let before = as_likely(outcome.target_from_source, outcome);
-        let known = [before].into_iter().chain(outcome.alternatives.clone());
-        Self::new(winner.pose, found_too.chain(known.map(beaten)), source)
+        let before = as_likely(result.pose, outcome);
+        let before = if result.is_distinguished_by_surfaces_only(winner) {
+            before
+        } else {
+            beaten(before)
+        };
+        let known = outcome.alternatives.iter().map(|other| beaten(*other));
+        let others = found_too.chain([before]).chain(known);
+        Self::new(winner.pose, others, source)
     }
 }
 

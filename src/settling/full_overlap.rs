@@ -72,7 +72,9 @@ pub fn placed_as_a_whole(
     candidates.sort_by(|a, b| a.apart().total_cmp(&b.apart()));
     let source = context.source;
     let best = candidates.split_first();
-    Ok(best.map(|(winner, others)| ChosenPose::in_place_of(outcome, winner, others, source)))
+    Ok(best.map(|(winner, others)| {
+        ChosenPose::in_place_of((outcome, &result), winner, others, source)
+    }))
 }
 
 /// The first poses of the match of the hand that it found, each once.

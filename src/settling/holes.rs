@@ -57,7 +57,9 @@ pub fn placed_by_holes(
     });
     better.sort_by_key(|other| (other.n_differences, Reverse(other.n_holes)));
     let best = better.split_first();
-    Ok(best.map(|(winner, others)| ChosenPose::in_place_of(outcome, winner, others, source)))
+    Ok(best.map(|(winner, others)| {
+        ChosenPose::in_place_of((outcome, &result), winner, others, source)
+    }))
 }
 
 /// Whether both parts have holes, and a pose like this one is looked for by them.

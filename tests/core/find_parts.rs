@@ -144,15 +144,26 @@ fn parts_that_fit_as_well_are_told_and_all_can_be_meant() {
         (record, String::from_utf8(done.stderr).unwrap())
     };
     let (record, messages) = run(&["twice.k", "stamped.dynain", "--json", "-"]);
-    assert_eq!(record["verdict"], "good");
+    // Which of the two is meant no distance tells.
+    assert_eq!(record["verdict"], "check");
+    assert_eq!(record["pose_statement"], "ambiguous");
     assert_eq!(
         record["files"]["crash"]["parts"],
         serde_json::json!([2_000_040])
     );
     let told = "fits part 52000040 about as well";
     assert!(messages.contains(told), "{messages}");
-    let warnings = record["warnings"].to_string();
-    assert!(warnings.contains(told), "{warnings}");
+    let reasons = record["reasons"].to_string();
+    assert!(reasons.contains(told), "{reasons}");
+    let (record, _) = run(&[
+        "twice.k",
+        "stamped.dynain",
+        "--crash-part",
+        "2000040",
+        "--json",
+        "-",
+    ]);
+    assert_eq!(record["verdict"], "good");
     let (record, _) = run(&[
         "twice.k",
         "stamped.dynain",

@@ -9,7 +9,6 @@ use crate::report::{
     UnitsRecord,
 };
 use crate::role::PerRole;
-use crate::text::parts_by_id;
 use crate::units::KnownUnits;
 
 /// Problems of each file that are told with the result.
@@ -94,13 +93,6 @@ fn file(part: &LoadedPart, units: Option<KnownUnits>) -> FileRecord {
 fn warnings(run: &MatchRun, parts: PerRole<&LoadedPart>) -> Vec<String> {
     let mut warnings = Vec::from_iter(run.told_alternative());
     warnings.extend(same_parts_line(parts));
-    if !run.alike_parts.is_empty() {
-        warnings.push(format!(
-            "{} fits {} about as well; --crash-part names the right one",
-            parts.stamped.file_name(),
-            parts_by_id(&run.alike_parts)
-        ));
-    }
     for (_, part) in parts.iter() {
         warnings.extend(problems(part));
         if part.settings.length_factor != 1.0 {

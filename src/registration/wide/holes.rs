@@ -2,6 +2,7 @@
 //! only hole on each that is as large. Where a part can slide along its counterpart, holes determine where it belongs.
 
 use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
@@ -11,7 +12,7 @@ use super::seeds::{aligned, frame, matrix};
 use crate::geometry::{Matrix3, Point3, Rotation, Vector3};
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::surface::Surface;
-use crate::search::FeatureGrid;
+use crate::search::{FeatureGrid, PointTree};
 
 /// Holes of the smaller and of the larger part that poses are made of, the largest first …
 const MOST_HOLES: [usize; 2] = [24, 64];
@@ -59,8 +60,8 @@ struct Hole {
 pub(super) struct Holes {
     data: Vec<Hole>,
     model: Vec<Hole>,
-    /// The holes of the model along an axis, by their middles.
-    along: AlongAxis,
+    /// The middles of the holes of the model.
+    centers: PointTree,
     alike: Alike,
 }
 
@@ -79,9 +80,10 @@ impl Holes {
             }
         }
         let edge = [data, model].map(|part| part.measures().mean_edge_length);
+        let centers: Vec<Point3> = of_model.iter().map(|hole| hole.center.into()).collect();
         Self {
             data: of_data,
-            along: AlongAxis::of(&of_model),
+            centers: PointTree::build(centers),
             model: of_model,
             alike: Alike {
                 edge: edge[0].max(edge[1]) * cloud.scale,
@@ -100,9 +102,12 @@ impl Holes {
             [only] => self.alike.align_single(only, model, &mut found),
             _ => self.alike.align_pairs(data, model, &mut found),
         }
+        let most = AtomicUsize::new(0);
         let counted = found.par_chunks(CHUNK).map(|chunk| {
             monitor.check()?;
-            let counts = chunk.iter().map(|first| self.aligned(&first.motion).0);
+            let counts = chunk
+                .iter()
+                .map(|first| self.n_paired(&first.motion, &most));
             Ok(counts.collect())
         });
         let counted: Result<Vec<Vec<usize>>, Cancelled> = counted.collect();
@@ -111,8 +116,9 @@ impl Holes {
         sorted.sort_unstable_by(|a, b| b.cmp(a));
         // Surfaces do not distinguish the places of a regular pattern: those that most holes support come alone.
         let of_these = sorted.get(LEAST_FIRST).or(sorted.last()).copied();
-        let nearly = NEARLY_MOST * sorted.first().copied().unwrap_or(0) as f64;
-        let least = of_these.unwrap_or(0).max(nearly.ceil() as usize);
+        let least = of_these
+            .unwrap_or(0)
+            .max(nearly(sorted.first().copied().unwrap_or(0)));
         let mut counts = counts.into_iter();
         found.retain(|_| counts.next().is_some_and(|n| n >= least));
         Ok(found)
@@ -120,65 +126,41 @@ impl Holes {
 
     /// A motion of the data shifted so that its holes lie on their counterparts in the mean, and how many have one.
     pub(super) fn aligned(&self, motion: &Motion32) -> (usize, Motion32) {
-        let (mut n, mut sum) = (0, Vector3::zeros());
-        for hole in &self.data {
-            let moved = motion.apply(&hole.center);
-            let off = |&i: &u32| self.model[i as usize].center - moved;
-            let near = self.along.within(&self.model, &moved, self.alike.near());
-            let like = near.iter().filter(|&&i| {
-                let other = &self.model[i as usize];
-                self.alike.are_as_large(hole, other)
-            });
-            // Of holes that lie equally close the first one.
-            let nearest = like.map(|i| (off(i), i)).min_by(|a, b| {
-                let closer = a.0.norm().total_cmp(&b.0.norm());
-                closer.then(a.1.cmp(b.1))
-            });
-            let nearest = nearest.map(|(off, _)| off);
-            if let Some(off) = nearest.filter(|off| off.norm() <= self.alike.near()) {
-                n += 1;
-                sum += off;
+        let offs = self.data.iter().filter_map(|hole| self.off(hole, motion));
+        let (n, sum) = offs.fold((0, Vector3::zeros()), |(n, sum), off| (n + 1, sum + off));
+        (n, motion.shifted(&(sum / n.max(1) as f64)))
+    }
+
+    /// How many holes of the data have their counterpart under a motion; fewer are told where that is fewer than
+    /// [`NEARLY_MOST`] of those that have it under another one. `most` is how many have it under any so far.
+    fn n_paired(&self, motion: &Motion32, most: &AtomicUsize) -> usize {
+        let least = nearly(most.load(Ordering::Relaxed));
+        let mut n = 0;
+        for (hole, n_left) in self.data.iter().zip((0..self.data.len()).rev()) {
+            n += usize::from(self.off(hole, motion).is_some());
+            if n + n_left < least {
+                return n;
             }
         }
-        let shift = sum / n.max(1) as f64;
-        (n, motion.shifted(&shift))
+        most.fetch_max(n, Ordering::Relaxed);
+        n
+    }
+
+    /// The way from a hole of the data to the nearest one of the model that is as large.
+    fn off(&self, hole: &Hole, motion: &Motion32) -> Option<Vector3> {
+        let moved = motion.apply(&hole.center);
+        let is_as_large = |i: u32| self.alike.are_as_large(hole, &self.model[i as usize]);
+        let near = self.alike.near();
+        let nearest = self
+            .centers
+            .nearest_of(is_as_large, &moved.into(), near, None)?;
+        Some(self.model[nearest.index as usize].center - moved)
     }
 }
 
-/// Holes in the order of their middles along the axis of the frame in which they extend farthest.
-struct AlongAxis {
-    axis: usize,
-    holes: Vec<u32>,
-}
-
-impl AlongAxis {
-    fn of(holes: &[Hole]) -> Self {
-        let extent = |axis: usize| {
-            let places = holes.iter().map(|hole| hole.center[axis]);
-            let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                (low.min(x), high.max(x))
-            });
-            high - low
-        };
-        let axis = (0..3).max_by(|&a, &b| extent(a).total_cmp(&extent(b)));
-        let axis = axis.unwrap_or(0);
-        let at = |i: u32| holes[i as usize].center[axis];
-        let mut sorted: Vec<u32> = (0..holes.len() as u32).collect();
-        sorted.sort_by(|&a, &b| at(a).total_cmp(&at(b)));
-        Self {
-            axis,
-            holes: sorted,
-        }
-    }
-
-    /// The holes that lie no farther than `near` from a point along the axis, among which are all that lie no farther
-    /// from it.
-    fn within(&self, holes: &[Hole], point: &Vector3, near: f64) -> &[u32] {
-        let off = |&i: &u32| holes[i as usize].center[self.axis] - point[self.axis];
-        let first = self.holes.partition_point(|i| off(i) < -near);
-        let rest = &self.holes[first..];
-        &rest[..rest.partition_point(|i| off(i) <= near)]
-    }
+/// The least number of holes that is nearly as many.
+fn nearly(most: usize) -> usize {
+    (NEARLY_MOST * most as f64).ceil() as usize
 }
 
 /// The largest holes of a part, with their middles moved by `to_local`.
@@ -360,9 +342,10 @@ mod tests {
 
     fn holes(n: usize) -> Holes {
         let model = rows(n);
+        let centers: Vec<Point3> = model.iter().map(|hole| hole.center.into()).collect();
         Holes {
             data: rows(60),
-            along: AlongAxis::of(&model),
+            centers: PointTree::build(centers),
             model,
             alike: Alike {
                 edge: 0.01,
@@ -371,27 +354,52 @@ mod tests {
         }
     }
 
+    fn shifted(by: f32) -> Motion32 {
+        aligned(
+            &Matrix3::identity(),
+            &Vector3::zeros(),
+            &Vector3::new(by.into(), (1.7 * by).into(), 0.004),
+        )
+    }
+
     #[test]
-    fn counterparts_are_those_among_all_holes() {
+    fn a_counterpart_is_the_nearest_of_all_holes_that_are_as_large() {
         let holes = holes(200);
         let near = holes.alike.near();
         let mut n_beside = 0;
-        for i in 0..400 {
-            let at = Vector3::new(0.0017 * f64::from(i), 0.0029 * f64::from(i), 0.004);
-            let found = holes.along.within(&holes.model, &at, near);
-            let is_near = |&i: &u32| (holes.model[i as usize].center - at).norm() <= near;
-            let mut found: Vec<u32> = found.iter().copied().filter(is_near).collect();
-            found.sort_unstable();
-            let all: Vec<u32> = (0..200).filter(is_near).collect();
-            n_beside += all.len();
-            assert_eq!(found, all);
+        for i in 0..400_u16 {
+            let motion = shifted(0.0017 * f32::from(i));
+            let own = &holes.data[usize::from(i) % 60];
+            let at = motion.apply(&own.center);
+            let alike = holes
+                .model
+                .iter()
+                .filter(|hole| holes.alike.are_as_large(own, hole));
+            let apart = alike.map(|hole| (hole.center - at).norm());
+            let least = apart.min_by(f64::total_cmp).filter(|apart| *apart <= near);
+            let found = holes.off(own, &motion).map(|off| off.norm());
+            assert_eq!(found, least);
+            n_beside += usize::from(found.is_some());
         }
         assert!(n_beside > 50, "{n_beside}");
-        assert!(
-            AlongAxis::of(&[])
-                .within(&[], &Vector3::zeros(), near)
-                .is_empty()
-        );
+    }
+
+    #[test]
+    fn holes_are_counted_as_far_as_it_matters() {
+        let holes = holes(200);
+        let motions: Vec<Motion32> = (0..200_u16)
+            .map(|i| shifted(0.002 * f32::from(i)))
+            .collect();
+        let all = motions.iter().map(|motion| holes.aligned(motion).0);
+        let all: Vec<usize> = all.collect();
+        let most = AtomicUsize::new(0);
+        let told = motions.iter().map(|motion| holes.n_paired(motion, &most));
+        let told: Vec<usize> = told.collect();
+        let least = nearly(*all.iter().max().unwrap());
+        assert!(all.iter().any(|n| *n < least) && all.iter().any(|n| *n >= least));
+        for (told, all) in told.into_iter().zip(all) {
+            assert!(told == all || told < all && all < least, "{told} {all}");
+        }
     }
 
     #[test]

@@ -2,7 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::{MOST_SLID, PoseComparison, Refined, SURELY_HELD, apart, ratio_by_borders};
+use super::{
+    HARDLY_HELD, MOST_SLID, PoseComparison, Refined, SURELY_HELD, apart, ratio_by_borders,
+};
 use crate::assess::free_motion::weak_motion;
 use crate::assess::tolerance::AS_CLOSE;
 use crate::geometry::Similarity;
@@ -15,6 +17,9 @@ use crate::settling::refine_with_borders::Least;
 
 /// Shares of the borders that differ by less than this do not distinguish hands.
 const SAME_SHARE: f64 = 0.02;
+/// Where not all borders lie together with the opposite hand, or those beside others lie no closer, so much more may do
+/// by chance.
+const SHARE_BY_CHANCE: f64 = 0.05;
 /// Where less of the borders lies where it belongs than what surely distinguishes hands, the score of the opposite hand
 /// counts as at least this many times the result's.
 const HINT: f64 = 0.9;
@@ -73,16 +78,51 @@ pub fn hand_by_borders(
         return Ok(None);
     };
     let fits_as_well = result.gap <= AS_CLOSE * opposite.gap;
-    let behind = result.held - opposite.held;
-    let ratio = ratio_by_borders(apart(behind, SAME_SHARE));
-    // Borders that fit neither hand well decide nothing by themselves.
-    let least = if opposite.held < SURELY_HELD {
-        HINT
-    } else {
-        0.0
-    };
     Ok(fits_as_well.then(|| OppositeHand {
-        score_ratio: ratio.max(least),
+        score_ratio: ratio_of_hands(&result, &opposite, comparison.remainder()),
         target_from_source: opposite.pose,
     }))
+}
+
+/// The score of the opposite hand over that of the result by their borders. Holes are off by more than `within`.
+fn ratio_of_hands(result: &Refined, opposite: &Refined, within: f64) -> f64 {
+    let is_supported = opposite.held >= SURELY_HELD;
+    let has_more_holes = opposite.has_more_holes_than(result, within);
+    // Of borders beside no other more may lie so by chance.
+    let lies_closer = opposite.held_of_paired() > result.held_of_paired();
+    let negligible = if has_more_holes || is_supported && lies_closer {
+        SAME_SHARE
+    } else {
+        SHARE_BY_CHANCE
+    };
+    let ratio = ratio_by_borders(apart(result.held - opposite.held, negligible));
+    if is_supported {
+        return ratio;
+    }
+    // Borders that fit neither hand well decide nothing by themselves. Of outlines that were trimmed differently, some
+    // lie together by chance: they are not even a hint.
+    let is_chance = opposite.held < HARDLY_HELD || result.is_held_as_well(opposite, within);
+    let is_hint = has_more_holes || !is_chance;
+    ratio.max(if is_hint { HINT } else { 1.0 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settling::border_choice::tests::refined;
+
+    #[test]
+    fn outlines_that_lie_together_by_chance_are_no_hint_of_the_opposite_hand() {
+        let ratio = |result, opposite| ratio_of_hands(&result, &opposite, 1.0);
+        // A hole that only the opposite hand has its counterpart of, and outlines that all lie together.
+        assert!(ratio(refined(0.9, 1.0, 1), refined(0.95, 1.0, 2)) < HINT);
+        assert!(ratio(refined(0.5, 0.6, 1), refined(0.55, 0.6, 2)) < 1.0);
+        // Trims of both parts, under which hardly any outlines lie together with either hand.
+        assert!(ratio(refined(0.04, 0.97, 3), refined(0.19, 0.98, 3)) >= 1.0);
+        assert!(ratio(refined(0.55, 0.74, 3), refined(0.57, 0.58, 3)) >= 1.0);
+        // One more hole is no accident.
+        assert!(ratio(refined(0.04, 0.97, 2), refined(0.19, 0.98, 3)) < 1.0);
+        // All that has a counterpart lies on it with both hands.
+        assert!(ratio(refined(0.896, 0.903, 51), refined(0.919, 0.927, 51)) >= 1.0);
+    }
 }

@@ -7,7 +7,7 @@ use crate::monitor::Monitor;
 use crate::registration::Surface;
 
 /// A pose of parts that lie on each other but for their borders.
-fn refined(held: f64, paired: f64, n_holes: usize) -> Refined {
+pub(super) fn refined(held: f64, paired: f64, n_holes: usize) -> Refined {
     Refined {
         pose: Similarity::identity(),
         held,
