@@ -1,5 +1,6 @@
 //! What a file holds, whatever its format: nodes, shells, solids, parts, sets, forming results.
 
+mod chosen;
 mod forming;
 mod formulation;
 mod index;

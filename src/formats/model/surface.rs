@@ -189,7 +189,7 @@ impl Model {
         }
     }
 
-    fn chosen(&self, selection: &Selection) -> Result<Chosen, SelectionError> {
+    pub(super) fn chosen(&self, selection: &Selection) -> Result<Chosen, SelectionError> {
         let no_set = |kind, id| SelectionError::NoSuchSet { kind, id };
         match selection {
             Selection::All => Ok(Chosen::Parts(vec![true; self.parts.len()])),
@@ -303,7 +303,8 @@ impl Mean {
     }
 }
 
-enum Chosen {
+/// The chosen elements.
+pub(super) enum Chosen {
     /// By part index.
     Parts(Vec<bool>),
     /// By shell index; no solids.
@@ -311,14 +312,14 @@ enum Chosen {
 }
 
 impl Chosen {
-    fn shell(&self, index: usize, part: u32) -> bool {
+    pub(super) fn shell(&self, index: usize, part: u32) -> bool {
         match self {
             Self::Parts(parts) => parts[part as usize],
             Self::Shells(shells) => shells[index],
         }
     }
 
-    fn solid(&self, part: u32) -> bool {
+    pub(super) fn solid(&self, part: u32) -> bool {
         match self {
             Self::Parts(parts) => parts[part as usize],
             Self::Shells(_) => false,

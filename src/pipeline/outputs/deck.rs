@@ -32,7 +32,7 @@ pub fn mesh_bytes(
     })
 }
 
-/// A part, moved, with its own ids. Its unit factor is applied as well, so the bytes are in the
+/// The chosen elements, moved, with their own ids. The unit factor is applied as well, so the bytes are in the
 /// crash model's unit. Mesh formats without ids get the matched surface only.
 pub fn part_bytes(
     format: Format,
@@ -46,7 +46,17 @@ pub fn part_bytes(
         return mesh_bytes(format, &mesh, &comments.join(", "), monitor);
     }
     let unit = Similarity::from_scale(part.settings.length_factor);
-    let model = moved(&part.model, &world_from_part.after(&unit));
+    let selection = &part.settings.selection;
+    let chosen = part.model.of_chosen(selection).map_err(|error| {
+        let path = part.path.clone();
+        PipelineError::Selection {
+            error,
+            near: String::new(),
+            path,
+            diagnostic: None,
+        }
+    })?;
+    let model = moved(&chosen, &world_from_part.after(&unit));
     let options = WriteOptions {
         comments: comments.to_vec(),
         ..WriteOptions::default()
@@ -56,7 +66,7 @@ pub fn part_bytes(
 
 /// What a deck of a part lacks that the deck it was read from has, in words; `None` for nothing.
 pub fn left_out(part: &LoadedPart) -> Option<String> {
-    let model = &part.model;
+    let model = part.model.of_chosen(&part.settings.selection).ok()?;
     let of_shells = model.shell_extras.iter();
     let n_stacks = of_shells.filter(|extra| extra.plies.is_some()).count();
     let n_parts = model
