@@ -156,6 +156,8 @@ kinds! {
     Unsupported, Warning, "keyword not carried out";
     /// Encrypted text was skipped.
     Encrypted, Note, "encrypted block skipped";
+    /// Encrypted text whose last line is missing, which takes the rest of the file with it.
+    EncryptedNoEnd, Error, "encrypted block without an end";
     /// Tabs were expanded to columns of eight.
     Tabs, Note, "tabs expanded";
     /// A mesh file's own oddities (STL, OBJ, PLY).

@@ -40,6 +40,19 @@ fn line(diagnostic: &Diagnostic) -> u64 {
 }
 
 #[test]
+fn an_encrypted_block_without_its_end_is_an_error() {
+    let begin = "-----BEGIN PGP MESSAGE-----\nabc\n";
+    let cut = read_text(format!("{NODES}{PART}{begin}{SHELL}*END\n"));
+    let mut found = cut.diagnostics.iter();
+    let error = found.find(|d| d.kind == DiagnosticKind::EncryptedNoEnd);
+    let error = error.expect("the end of the block is missing");
+    assert_eq!((line(error), error.severity()), (9, Severity::Error));
+    assert_eq!(cut.diagnostics.n_geometry_errors(), 1);
+    let whole = format!("{NODES}{PART}{begin}-----END PGP MESSAGE-----\n{SHELL}*END\n");
+    assert_eq!(only(&read_text(whole)).kind, DiagnosticKind::Encrypted);
+}
+
+#[test]
 fn errors_that_concern_where_things_lie_are_told_from_others() {
     let of = |cards: &str| {
         let model = read_text(format!("{NODES}{PART}{SHELL}{cards}"));

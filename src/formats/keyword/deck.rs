@@ -146,6 +146,12 @@ impl Reader<'_> {
                 .found
                 .push(diagnostic.at(file.position(first)));
         }
+        if let Some(start) = blocks.unended_encrypted() {
+            let message = "the encrypted block has no END line, so all that follows in the file is passed over with it";
+            let diagnostic = Diagnostic::new(DiagnosticKind::EncryptedNoEnd, message);
+            let found = &mut self.assembly.found;
+            found.push(diagnostic.at(file.position(start)));
+        }
     }
 
     /// The layout after a `*KEYWORD` line: the suffix of the include wins over the file's `own` wish,
