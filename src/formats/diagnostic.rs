@@ -174,6 +174,8 @@ kinds! {
     NoElements, Warning, "no elements";
     /// A deck that begins with `*KEYWORD` ends among nodes, elements or results, without `*END`.
     NoEnd, Warning, "deck without an end";
+    /// Keywords follow `*END`.
+    BehindEnd, Warning, "keywords behind the end";
 }
 
 impl DiagnosticKind {

@@ -53,6 +53,23 @@ fn an_encrypted_block_without_its_end_is_an_error() {
 }
 
 #[test]
+fn keywords_behind_the_end_are_told() {
+    let of = |behind: &str| read_text(format!("{NODES}{PART}{SHELL}*END\n{behind}"));
+    let model = of("\n*SECTION_SHELL\n1\n1,1,1,1\n*END\n*TITLE\nlost\n");
+    let finding = only(&model);
+    assert_eq!(finding.kind, DiagnosticKind::BehindEnd);
+    assert_eq!(line(&finding), 11);
+    let told = finding.message;
+    assert!(
+        told.contains("the 2 keywords behind it") && told.contains("*SECTION_SHELL in line 13"),
+        "{told}"
+    );
+    for behind in ["", "\n\n", "$ the end\n", "*END\n", "text\n"] {
+        assert_eq!(all(&of(behind)), Vec::<String>::new(), "{behind:?}");
+    }
+}
+
+#[test]
 fn errors_that_concern_where_things_lie_are_told_from_others() {
     let of = |cards: &str| {
         let model = read_text(format!("{NODES}{PART}{SHELL}{cards}"));
