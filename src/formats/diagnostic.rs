@@ -128,6 +128,8 @@ kinds! {
     DuplicateSet, Warning, "duplicate set id";
     /// An element without area.
     ZeroArea, Warning, "element without area";
+    /// A quad whose edges cross: two of its nodes are exchanged.
+    CrossedEdges, Warning, "crossed edges";
     /// A shell with fewer than three different nodes.
     DegenerateElement, Warning, "degenerate element";
     /// Shells whose nodes do not lie in their mid-surface, for which they are taken all the same.

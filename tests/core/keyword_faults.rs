@@ -471,6 +471,54 @@ mod places {
     }
 
     #[test]
+    fn plies_may_be_written_in_whole_numbers() {
+        for plies in [
+            "         1         1        45                   2         3        90\n",
+            "   2000001         1        45\n         2         3\n",
+            "1,1,45,,2,3,90\n",
+            "1,1,45\n2,3\n",
+        ] {
+            let shells = format!("1,1,1,2,3,4\n{plies}2,1,1,2,3,3\n1,0.5,0\n");
+            let model = read_text(format!(
+                "{NODES}{PART}*ELEMENT_SHELL_COMPOSITE\n{shells}*END\n"
+            ));
+            assert_eq!(all(&model), Vec::<String>::new(), "{plies}");
+            assert_eq!(model.shells.len(), 2, "{plies}");
+            assert_eq!(model.ply_stacks, [vec![1.0, 3.0], vec![0.5]], "{plies}");
+        }
+        for broken in ["       2       1       2       x", "2,1,1,2,x"] {
+            let shells = format!("1,1,1,2,3,4\n1,0.5\n{broken}\n");
+            let model = read_text(format!("{NODES}{PART}*ELEMENT_SHELL_COMPOSITE\n{shells}"));
+            assert_eq!(only(&model).severity(), Severity::Error, "{broken}");
+            assert_eq!(model.ply_stacks, [vec![0.5]], "{broken}");
+        }
+    }
+
+    #[test]
+    fn quads_whose_edges_cross_are_told() {
+        let of = |cards: &str| {
+            let nodes = "*NODE\n1,0,0,0\n2,2,0,0\n3,2,1,0\n4,0,1,0\n5,1.2,0.8,0\n6,2,1,1.9\n";
+            read_text(format!("{nodes}{PART}*ELEMENT_SHELL\n{cards}*END\n"))
+        };
+        for crossed in ["1,1,1,3,2,4\n", "1,1,1,2,4,3\n"] {
+            let model = of(crossed);
+            let finding = only(&model);
+            assert_eq!(finding.kind, DiagnosticKind::CrossedEdges);
+            assert_eq!(line(&finding), 12);
+            assert_eq!(model.shells.len(), 1);
+        }
+        // In order, concave, warped, a triangle.
+        for whole in [
+            "1,1,1,2,3,4\n",
+            "1,1,1,2,5,4\n",
+            "1,1,1,2,6,4\n",
+            "1,1,1,3,2,2\n",
+        ] {
+            assert_eq!(all(&of(whole)), Vec::<String>::new(), "{whole}");
+        }
+    }
+
+    #[test]
     fn concave_quads_are_cut_along_their_inner_diagonal() {
         let arrow = "*NODE\n1,0,0,0\n2,2,1,0\n3,0,2,0\n4,1.2,1,0\n*ELEMENT_SHELL\n";
         for corners in ["1,2,3,4", "2,3,4,1"] {

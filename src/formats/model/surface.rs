@@ -454,6 +454,18 @@ impl<'a> Builder<'a> {
     }
 }
 
+/// Whether the edges of a quad cross: on either diagonal its halves, which have area, look apart. Those of a warped
+/// quad do so at most a little.
+pub(crate) fn has_crossed_edges([a, b, c, d]: [Point3; 4]) -> bool {
+    let looks_apart = |[p, q, r, s]: [Point3; 4]| {
+        let (first, second) = ((q - p).cross(&(r - p)), (r - p).cross(&(s - p)));
+        first.dot(&second) < -0.5 * first.norm() * second.norm()
+            && has_area(p, q, r)
+            && has_area(p, r, s)
+    };
+    looks_apart([a, b, c, d]) && looks_apart([b, c, d, a])
+}
+
 /// False if the corners lie on a line to the accuracy of their coordinates' differences.
 pub(crate) fn has_area(a: Point3, b: Point3, c: Point3) -> bool {
     let (u, v) = (b - a, c - a);
