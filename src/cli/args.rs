@@ -181,15 +181,15 @@ pub struct OutputArgs {
     /// Write the distance of every node of both parts to the other part as CSV.
     #[arg(long, value_name = "FILE|-")]
     pub deviations: Option<PathBuf>,
-    /// Write the stamped mesh at its matched pose; the file extension selects the format
-    /// (.k, .dynain, .stl, .ply, .obj).
+    /// Write the stamped mesh at its matched pose, without parts that were left out; the file extension selects the
+    /// format (.k, .dynain, .stl, .ply, .obj).
     #[arg(long, value_name = "FILE")]
     pub moved: Option<PathBuf>,
     /// Write the stamped mesh at its original pose, in the unit of the crash part; formats as for
     /// --moved.
     #[arg(long, value_name = "FILE")]
     pub converted: Option<PathBuf>,
-    /// Write the mesh of the crash part; formats as for --moved.
+    /// Write the mesh of the crash parts that were matched; formats as for --moved.
     #[arg(long, value_name = "FILE")]
     pub crash_mesh: Option<PathBuf>,
     /// Report and write this one of the poses that fit nearly as well: 1 is the best, 2 the next.

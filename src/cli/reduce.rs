@@ -6,9 +6,10 @@ use serde::Serialize;
 
 use super::args::ReduceArgs;
 use super::{check_outputs, json_target, print, progress, takes_stdout, write_json, write_output};
-use crate::formats::ReadOptions;
+use crate::formats::{Format, ReadOptions};
+use crate::geometry::Similarity;
 use crate::pipeline::load::{LoadSettings, load, parse_selection};
-use crate::pipeline::outputs::deck::{format_of, mesh_bytes};
+use crate::pipeline::outputs::deck::{format_of, reduced_bytes, reduced_lacks};
 use crate::pipeline::outputs::{Content, Target};
 use crate::pipeline::reduce::{Deviation, Level, Levels};
 use crate::simplify::{SimplifySettings, Speed, StopReason};
@@ -63,8 +64,19 @@ pub fn run(args: &ReduceArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     if !takes_stdout(args.json.as_deref()) {
         print(&describe(&record))?;
     }
-    let title = part.file_name();
-    let bytes = mesh_bytes(format_of(&args.out)?, &level.mesh, &title, &monitor)?;
+    let format = format_of(&args.out)?;
+    let bytes = reduced_bytes(
+        format,
+        &part,
+        &level.mesh,
+        &Similarity::identity(),
+        &monitor,
+    )?;
+    if format == Format::Keyword
+        && let Some(lacks) = reduced_lacks(&part)
+    {
+        log::warn!("{}: {lacks}", args.out.display());
+    }
     let mut is_complete = true;
     let mut note = |option: &str, written: anyhow::Result<()>| {
         if let Err(error) = written {

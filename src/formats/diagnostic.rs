@@ -128,6 +128,8 @@ kinds! {
     DuplicateSet, Warning, "duplicate set id";
     /// An element without area.
     ZeroArea, Warning, "element without area";
+    /// A quad whose edges cross: two of its nodes are exchanged.
+    CrossedEdges, Warning, "crossed edges";
     /// A shell with fewer than three different nodes.
     DegenerateElement, Warning, "degenerate element";
     /// Shells whose nodes do not lie in their mid-surface, for which they are taken all the same.
@@ -156,6 +158,8 @@ kinds! {
     Unsupported, Warning, "keyword not carried out";
     /// Encrypted text was skipped.
     Encrypted, Note, "encrypted block skipped";
+    /// Encrypted text whose last line is missing, which takes the rest of the file with it.
+    EncryptedNoEnd, Error, "encrypted block without an end";
     /// Tabs were expanded to columns of eight.
     Tabs, Note, "tabs expanded";
     /// A mesh file's own oddities (STL, OBJ, PLY).
@@ -172,6 +176,8 @@ kinds! {
     NoElements, Warning, "no elements";
     /// A deck that begins with `*KEYWORD` ends among nodes, elements or results, without `*END`.
     NoEnd, Warning, "deck without an end";
+    /// Keywords follow `*END`.
+    BehindEnd, Warning, "keywords behind the end";
 }
 
 impl DiagnosticKind {

@@ -35,9 +35,11 @@ pub struct TooLarge {
     pub max_bytes: u64,
 }
 
-/// "4 GiB", "0.5 GiB".
+/// "4 GiB", "0.5 GiB"; with four digits, since a limit is a whole number of bytes and no more than near what was asked.
 fn in_gib(n_bytes: u64) -> String {
-    format!("{} GiB", n_bytes as f64 / f64::from(1u32 << 30))
+    let gib = n_bytes as f64 / f64::from(1u32 << 30);
+    let rounded: f64 = format!("{gib:.3e}").parse().unwrap_or(gib);
+    format!("{rounded} GiB")
 }
 
 /// Opens files by path.
@@ -454,6 +456,13 @@ mod tests {
         cut.truncate(20);
         let error = unpacked(cut, NO_LIMIT).unwrap_err();
         assert!(error.to_string().contains("cut off"), "{error}");
+    }
+
+    #[test]
+    fn limits_are_told_as_they_were_asked_for() {
+        let asked = [4.0, 0.5, 1e-6, 0.1];
+        let told = asked.map(|gib| in_gib((gib * f64::from(1u32 << 30)).round() as u64));
+        assert_eq!(told, ["4 GiB", "0.5 GiB", "0.000001 GiB", "0.1 GiB"]);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 
 use super::load::LoadedPart;
 use crate::role::{PerRole, Role};
+use crate::text::tidy_factor;
 use crate::units::{KnownUnits, LengthUnit, UnitOrigin};
 
 /// The units of a pair, or of one part alone.
@@ -91,18 +92,71 @@ impl PairUnits {
     }
 }
 
+/// What speaks against the units that the user set: what each file says itself, and the sizes of both parts.
+pub fn doubts_of_set_units(parts: PerRole<&LoadedPart>) -> Vec<String> {
+    let of_files = parts
+        .iter()
+        .filter_map(|(_, part)| doubt_of_set_units(part));
+    of_files.chain(doubt_of_sizes(parts)).collect()
+}
+
+/// What a file says of its units, in words, where the user set others.
+pub fn doubt_of_set_units(part: &LoadedPart) -> Option<String> {
+    let (set, own) = (part.settings.units?, part.guessed_units?);
+    let is_same = match set.system.and(own.units.system) {
+        Some(_) => set == own.units,
+        None => set.length == own.units.length,
+    };
+    // A size alone tells millimetres from metres and no more.
+    let is_told = own.origin != UnitOrigin::Size
+        || matches!(set.length, LengthUnit::Millimeter | LengthUnit::Meter);
+    (is_told && !is_same).then(|| {
+        format!(
+            "the units of {} are set to {}, which contradicts {}",
+            part.file_name(),
+            set.label(),
+            own.words()
+        )
+    })
+}
+
+/// Says that the parts are as large as each other although the units, of which the user set some, differ.
+fn doubt_of_sizes(parts: PerRole<&LoadedPart>) -> Option<String> {
+    let is_set = parts.iter().any(|(_, part)| part.settings.units.is_some());
+    let factor = factor_left(parts).filter(|factor| is_set && !speaks_for(*factor, parts))?;
+    let PerRole { crash, stamped } = parts.map(|part| {
+        let words = part.units().map_or_else(String::new, KnownUnits::words);
+        format!("{} is in {words}", part.file_name())
+    });
+    Some(format!(
+        "{stamped}, and {crash}; yet the sizes of the parts do not differ by the factor {} between these units, and \
+         none was applied",
+        tidy_factor(factor)
+    ))
+}
+
 /// What the stamped part's lengths have still to be multiplied by: both files say their units, and the sizes of
 /// the parts speak for it too, since a comment may be older than its file.
 pub fn missing_factor(parts: PerRole<&LoadedPart>) -> Option<f64> {
+    factor_left(parts).filter(|factor| speaks_for(*factor, parts))
+}
+
+/// The factor between the units of both files that was not applied; `None` if there is none.
+fn factor_left(parts: PerRole<&LoadedPart>) -> Option<f64> {
     let PerRole { crash, stamped } = parts.map(|part| {
         let known = part.units().filter(|known| known.origin.is_firm())?;
         Some(known.units.length)
     });
     let factor = stamped?.factor_to(crash?) / parts.stamped.settings.length_factor;
+    ((factor - 1.0).abs() > 1e-9).then_some(factor)
+}
+
+/// Whether the sizes of the parts would be more alike with the stamped lengths multiplied by a factor.
+fn speaks_for(factor: f64, parts: PerRole<&LoadedPart>) -> bool {
     let size = |part: &LoadedPart| part.surface.measures().diagonal;
     let ratio = size(parts.crash) / size(parts.stamped);
     let off = |from: f64| (ratio / from).ln().abs();
-    ((factor - 1.0).abs() > 1e-9 && off(factor) < off(1.0)).then_some(factor)
+    off(factor) < off(1.0)
 }
 
 /// The unit of lengths after a factor was applied.
@@ -110,7 +164,7 @@ fn after_factor(known: KnownUnits, factor: f64) -> Option<LengthUnit> {
     known.units.length.times(1.0 / factor)
 }
 
-/// A file's own units where they agree with the unit of all lengths, else those that follow.
+/// A file's own units where the user set them or they agree with the unit of all lengths, else those that follow.
 fn agreed(
     part: Option<&LoadedPart>,
     known: Option<KnownUnits>,
@@ -120,8 +174,10 @@ fn agreed(
     let Some(lengths) = lengths else {
         return known;
     };
-    let agrees = |known: &KnownUnits| after_factor(*known, factor) == Some(lengths);
-    known.filter(agrees).or_else(|| {
+    let stands = |known: &KnownUnits| {
+        known.origin == UnitOrigin::User || after_factor(*known, factor) == Some(lengths)
+    };
+    known.filter(stands).or_else(|| {
         Some(KnownUnits {
             units: lengths.times(factor)?.into(),
             origin: UnitOrigin::OtherPart,

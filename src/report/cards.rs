@@ -125,14 +125,26 @@ impl Default for CardOptions {
     }
 }
 
+/// Scales that are no change of units: parts of one unit differ by less in size.
+const NO_UNIT: std::ops::RangeInclusive<f64> = 0.5..=2.0;
+
+/// What to do about a scale that cards cannot hold.
+fn without_scale(scale: f64) -> &'static str {
+    if NO_UNIT.contains(&scale) {
+        "match again with a rigid motion, without a free scale or a start pose that has one"
+    } else {
+        "bring the stamped file to the unit of the crash model first"
+    }
+}
+
 /// Why a pose cannot be put on cards.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CardError {
     /// The cards hold a rigid motion only.
     #[error(
         "the pose has the scale {scale}, which the cards cannot hold: the solver would scale \
-         coordinates but neither thickness nor stresses; bring the stamped file to the unit of \
-         the crash model first"
+         coordinates but neither thickness nor stresses; {}",
+        without_scale(*scale)
     )]
     Scaled {
         /// Scale factor of the pose.

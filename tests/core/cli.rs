@@ -7,6 +7,7 @@ use serde_json::Value;
 use shapematch::formats::{FileHash, ReadOptions, read};
 use shapematch::geometry::{Matrix4, Similarity};
 use shapematch::monitor::Monitor;
+use shapematch::pipeline::load::{LoadSettings, load};
 use shapematch::pipeline::sweep::node_distance;
 use shapematch::report::{cards::read_back, parse_matrix};
 
@@ -402,6 +403,28 @@ fn reduction_keeps_the_ceiling_and_its_figures() {
     for key in ["triangles_before", "time_ms", "rms", "max", "border_max"] {
         assert!(record[key].is_number(), "no key {key}");
     }
+}
+
+#[test]
+fn a_reduced_deck_keeps_thickness_id_and_title_and_says_what_it_lacks() {
+    let pair = Pair::bundled();
+    let [input, out] = ["stamped.dynain.gz", "small.k"].map(|name| pair.path(name));
+    let output = shapematch(&["reduce", &input, "--triangles", "1000", "--out", &out]);
+    let told = text(&output.stderr);
+    assert!(output.status.success(), "{told}");
+    assert!(
+        told.contains("left out of the deck: forming results"),
+        "{told}"
+    );
+    let read = |path: &str| {
+        let (settings, silent) = (LoadSettings::default(), Monitor::silent());
+        load(Path::new(path), &settings, &silent).unwrap()
+    };
+    let (whole, small) = (read(&input), read(&out));
+    assert_eq!(small.chosen_part_ids(), whole.chosen_part_ids());
+    assert_eq!(small.model.parts[0].title, whole.model.parts[0].title);
+    let [before, after] = [&whole, &small].map(|part| part.mean_thickness().unwrap());
+    assert!((after - before).abs() < 1e-6 * before, "{after} {before}");
 }
 
 #[test]

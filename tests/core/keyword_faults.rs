@@ -40,6 +40,36 @@ fn line(diagnostic: &Diagnostic) -> u64 {
 }
 
 #[test]
+fn an_encrypted_block_without_its_end_is_an_error() {
+    let begin = "-----BEGIN PGP MESSAGE-----\nabc\n";
+    let cut = read_text(format!("{NODES}{PART}{begin}{SHELL}*END\n"));
+    let mut found = cut.diagnostics.iter();
+    let error = found.find(|d| d.kind == DiagnosticKind::EncryptedNoEnd);
+    let error = error.expect("the end of the block is missing");
+    assert_eq!((line(error), error.severity()), (9, Severity::Error));
+    assert_eq!(cut.diagnostics.n_geometry_errors(), 1);
+    let whole = format!("{NODES}{PART}{begin}-----END PGP MESSAGE-----\n{SHELL}*END\n");
+    assert_eq!(only(&read_text(whole)).kind, DiagnosticKind::Encrypted);
+}
+
+#[test]
+fn keywords_behind_the_end_are_told() {
+    let of = |behind: &str| read_text(format!("{NODES}{PART}{SHELL}*END\n{behind}"));
+    let model = of("\n*SECTION_SHELL\n1\n1,1,1,1\n*END\n*TITLE\nlost\n");
+    let finding = only(&model);
+    assert_eq!(finding.kind, DiagnosticKind::BehindEnd);
+    assert_eq!(line(&finding), 11);
+    let told = finding.message;
+    assert!(
+        told.contains("the 2 keywords behind it") && told.contains("*SECTION_SHELL in line 13"),
+        "{told}"
+    );
+    for behind in ["", "\n\n", "$ the end\n", "*END\n", "text\n"] {
+        assert_eq!(all(&of(behind)), Vec::<String>::new(), "{behind:?}");
+    }
+}
+
+#[test]
 fn errors_that_concern_where_things_lie_are_told_from_others() {
     let of = |cards: &str| {
         let model = read_text(format!("{NODES}{PART}{SHELL}{cards}"));
@@ -438,6 +468,54 @@ mod places {
         assert_eq!(model.diagnostics.count(DiagnosticKind::DuplicateNode), 1);
         let mesh = model.surface(&Selection::All).unwrap().mesh;
         assert!((mesh.area() - 1.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn plies_may_be_written_in_whole_numbers() {
+        for plies in [
+            "         1         1        45                   2         3        90\n",
+            "   2000001         1        45\n         2         3\n",
+            "1,1,45,,2,3,90\n",
+            "1,1,45\n2,3\n",
+        ] {
+            let shells = format!("1,1,1,2,3,4\n{plies}2,1,1,2,3,3\n1,0.5,0\n");
+            let model = read_text(format!(
+                "{NODES}{PART}*ELEMENT_SHELL_COMPOSITE\n{shells}*END\n"
+            ));
+            assert_eq!(all(&model), Vec::<String>::new(), "{plies}");
+            assert_eq!(model.shells.len(), 2, "{plies}");
+            assert_eq!(model.ply_stacks, [vec![1.0, 3.0], vec![0.5]], "{plies}");
+        }
+        for broken in ["       2       1       2       x", "2,1,1,2,x"] {
+            let shells = format!("1,1,1,2,3,4\n1,0.5\n{broken}\n");
+            let model = read_text(format!("{NODES}{PART}*ELEMENT_SHELL_COMPOSITE\n{shells}"));
+            assert_eq!(only(&model).severity(), Severity::Error, "{broken}");
+            assert_eq!(model.ply_stacks, [vec![0.5]], "{broken}");
+        }
+    }
+
+    #[test]
+    fn quads_whose_edges_cross_are_told() {
+        let of = |cards: &str| {
+            let nodes = "*NODE\n1,0,0,0\n2,2,0,0\n3,2,1,0\n4,0,1,0\n5,1.2,0.8,0\n6,2,1,1.9\n";
+            read_text(format!("{nodes}{PART}*ELEMENT_SHELL\n{cards}*END\n"))
+        };
+        for crossed in ["1,1,1,3,2,4\n", "1,1,1,2,4,3\n"] {
+            let model = of(crossed);
+            let finding = only(&model);
+            assert_eq!(finding.kind, DiagnosticKind::CrossedEdges);
+            assert_eq!(line(&finding), 12);
+            assert_eq!(model.shells.len(), 1);
+        }
+        // In order, concave, warped, a triangle.
+        for whole in [
+            "1,1,1,2,3,4\n",
+            "1,1,1,2,5,4\n",
+            "1,1,1,2,6,4\n",
+            "1,1,1,3,2,2\n",
+        ] {
+            assert_eq!(all(&of(whole)), Vec::<String>::new(), "{whole}");
+        }
     }
 
     #[test]

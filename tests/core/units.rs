@@ -9,7 +9,7 @@ use shapematch::monitor::Monitor;
 use shapematch::pipeline::load::{LoadSettings, LoadedPart, load_from};
 use shapematch::pipeline::match_parts::{MatchRecipe, match_parts};
 use shapematch::pipeline::outputs::record::match_record;
-use shapematch::pipeline::units::PairUnits;
+use shapematch::pipeline::units::{PairUnits, doubts_of_set_units};
 use shapematch::role::{PerRole, Role};
 use shapematch::units::{LengthUnit, UnitSystem};
 
@@ -221,9 +221,71 @@ fn stresses_in_other_units_are_told() {
         warning.contains("in MPa") && warning.contains("in GPa"),
         "{warning}"
     );
+    let words = PairUnits::sentences(PerRole::new(&crash, &stamped));
+    assert_eq!(words[2], "stamped.dynain.gz: kg-mm-ms, set by you");
     let alike = bundled("stamped", &LoadSettings::default());
     assert_eq!(
         PairUnits::stress_warning(PerRole::new(&crash, &alike)),
         None
     );
+}
+
+#[test]
+fn units_that_are_set_stand_and_what_contradicts_them_is_told() {
+    let set = |name, units: shapematch::units::Units| {
+        let units = Some(units);
+        bundled(
+            name,
+            &LoadSettings {
+                units,
+                ..LoadSettings::default()
+            },
+        )
+    };
+    let as_it_is = bundled("crash", &LoadSettings::default());
+    let stamped = set("stamped", UnitSystem::KgMS.into());
+    let parts = PerRole::new(&as_it_is, &stamped);
+    let words = PairUnits::sentences(parts);
+    assert_eq!(words[0], "lengths in mm");
+    assert_eq!(
+        words[2],
+        "stamped.dynain.gz: kg-m-s, set by you; no factor was applied"
+    );
+    let doubts = doubts_of_set_units(parts);
+    assert_eq!(doubts.len(), 2, "{doubts:?}");
+    assert_eq!(
+        doubts[0],
+        "the units of stamped.dynain.gz are set to kg-m-s, which contradicts mm, guessed from size and thickness"
+    );
+    assert!(doubts[1].contains("by the factor 1000"), "{}", doubts[1]);
+
+    let crash = set("crash", UnitSystem::GMmMs.into());
+    let stamped = set("stamped", LengthUnit::Millimeter.into());
+    let doubts = doubts_of_set_units(PerRole::new(&crash, &stamped));
+    assert_eq!(doubts.len(), 1, "{doubts:?}");
+    assert!(
+        doubts[0]
+            .ends_with("are set to g-mm-ms, which contradicts ton-mm-s, from title or comment"),
+        "{}",
+        doubts[0]
+    );
+    let none = doubts_of_set_units(PerRole::new(&as_it_is, &stamped));
+    assert_eq!(none, Vec::<String>::new());
+}
+
+#[test]
+fn the_window_tells_what_contradicts_the_units_that_are_set() {
+    let mut window = Window::new();
+    window.open("says_mm.k", Role::Crash);
+    window.apply(set(Role::Crash, LengthUnit::Millimeter));
+    let told = |window: &Window| {
+        let mut rows = window.state.log.rows().iter();
+        rows.any(|row| {
+            row.text
+                .contains("which contradicts mm, from title or comment")
+        })
+    };
+    assert!(!told(&window));
+    window.apply(set(Role::Crash, LengthUnit::Inch));
+    assert!(told(&window));
 }

@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use super::PartsState;
 use crate::app::Effect;
-use crate::app::LogStep;
 use crate::app::work::Work;
+use crate::app::{LogStep, NoticeLevel};
 use crate::pipeline::load::LoadedPart;
+use crate::pipeline::units::doubt_of_set_units;
 use crate::role::{PerRole, Role};
+use crate::text::capital;
 use crate::units::Units;
 
 impl PartsState {
@@ -32,6 +34,7 @@ impl PartsState {
             Some(units) => format!("{file} is in {}", units.label()),
             None => format!("Guess the units of {file}"),
         };
+        let doubt = doubt_of_set_units(&labelled);
         let has_changed = part.loaded.settings.units != units;
         let gesture = work.history.next_gesture();
         if has_changed {
@@ -41,6 +44,10 @@ impl PartsState {
                 }
             });
             work.log_step(LogStep::Units, Some(role), line, None);
+            if let Some(doubt) = doubt {
+                let level = NoticeLevel::Warning;
+                work.log_at(level, LogStep::Units, Some(role), capital(&doubt), None);
+            }
         }
         let mut effects = Vec::new();
         if let Some(hash) = hash {

@@ -250,6 +250,13 @@ impl<'a> Blocks<'a> {
         self.encrypted.first().map(|range| range.start)
     }
 
+    /// Where an encrypted part begins that no line ends: the rest of the file is passed over as encrypted.
+    pub fn unended_encrypted(&self) -> Option<usize> {
+        let last = self.encrypted.last()?;
+        let text = &self.file.bytes()[last.clone()];
+        memmem::find(text, PGP_END).is_none().then_some(last.start)
+    }
+
     fn has_encrypted(&self, body: &Range<usize>) -> bool {
         let after = self
             .encrypted

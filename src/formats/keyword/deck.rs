@@ -25,7 +25,7 @@ use super::results::FormingCount;
 use super::sets::{SetKind, read_set};
 use super::source_file::{Place, SourceFile};
 use super::transform::Transformation;
-use super::{chunks, nodes, resolve, shells, solids};
+use super::{chunks, ends, nodes, resolve, shells, solids};
 use crate::monitor::{Cancelled, Monitor};
 
 /// Includes may be nested this deep.
@@ -89,12 +89,13 @@ impl Reader<'_> {
         }
         self.n_bytes += file.bytes().len() as u64;
         let mut blocks = Blocks::new(file, context.layout);
-        self.report_encrypted(file, &blocks);
+        ends::report_encrypted(file, &blocks, &mut self.assembly.found);
         let mut has_head = false;
         let mut last: Option<Block<'_>> = None;
         while let Some(block) = blocks.next() {
             self.monitor.check()?;
             if block.name == "END" {
+                ends::report_behind(&block, blocks, &mut self.assembly.found);
                 last = None;
                 break;
             }
@@ -111,41 +112,10 @@ impl Reader<'_> {
         }
         // Included files and loose cards often have neither head nor end.
         if let Some(last) = last.filter(|_| has_head && self.open.len() == 1) {
-            self.report_cut(file, &last);
+            ends::report_cut(file, &last, &mut self.assembly.found);
         }
         self.monitor.progress("read deck", self.n_bytes, None);
         Ok(())
-    }
-
-    /// Says that a deck ends in the middle of its data, which is what a copy that was broken off looks like. Behind a
-    /// whole line it may be complete too.
-    fn report_cut(&mut self, file: &SourceFile, last: &Block<'_>) {
-        let name = &last.name;
-        let is_data =
-            ["NODE", "ELEMENT", "INITIAL"].contains(&name.split('_').next().unwrap_or(""));
-        if is_data {
-            let rest = if file.bytes()[last.body.clone()].ends_with(b"\n") {
-                "complete, as *END is optional, or cut off behind a whole line"
-            } else {
-                "the rest of it is probably missing"
-            };
-            let message = format!("the file ends inside *{name} without *END; {rest}");
-            let at = file.position(last.body.end.saturating_sub(1));
-            let diagnostic = Diagnostic::new(DiagnosticKind::NoEnd, message);
-            self.assembly.found.push(diagnostic.at(at));
-        }
-    }
-
-    fn report_encrypted(&mut self, file: &SourceFile, blocks: &Blocks<'_>) {
-        if let Some(first) = blocks.first_encrypted() {
-            let n = blocks.n_encrypted();
-            let s = if n == 1 { "" } else { "s" };
-            let message = format!("{n} encrypted block{s} skipped");
-            let diagnostic = Diagnostic::new(DiagnosticKind::Encrypted, message);
-            self.assembly
-                .found
-                .push(diagnostic.at(file.position(first)));
-        }
     }
 
     /// The layout after a `*KEYWORD` line: the suffix of the include wins over the file's `own` wish,

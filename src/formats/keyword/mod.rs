@@ -22,6 +22,7 @@ pub mod block;
 pub mod card;
 mod chunks;
 pub mod deck;
+mod ends;
 pub mod exchange;
 mod exponential;
 pub mod expression;

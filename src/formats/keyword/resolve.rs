@@ -6,7 +6,9 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics, Position};
-use super::super::model::{AppliedMotion, Model, Nodes, Set, Sets, Shell, ShellExtra, has_area};
+use super::super::model::{
+    AppliedMotion, Model, Nodes, Set, Sets, Shell, ShellExtra, has_area, has_crossed_edges,
+};
 use super::super::moved::reverse_elements;
 use super::super::{MAX_LENGTH, ReadOptions};
 use super::assemble::{Assembly, Motion};
@@ -57,7 +59,7 @@ pub(super) fn finish(
     model.forming = results.finish();
     leave_out_nodes(&repeated, &mut model);
     monitor.check()?;
-    tell_flat_shells(&assembly, &mut model);
+    tell_odd_shells(&assembly, &mut model);
     monitor.check()?;
     tell_offsets(&mut assembly, &mut model);
     tell_no_elements(&mut assembly, &model);
@@ -487,31 +489,40 @@ fn matrix(assembly: &Assembly, model: &Model, id: u64) -> Result<Matrix4, String
     }
 }
 
-/// Shells without area stay in the model and are left out of surfaces.
-fn tell_flat_shells(assembly: &Assembly, model: &mut Model) {
+/// Shells without area stay in the model and are left out of surfaces; quads whose edges cross are taken as they are.
+fn tell_odd_shells(assembly: &Assembly, model: &mut Model) {
     let positions = model.nodes.positions();
-    let is_flat = |shell: &Shell| {
+    let fault_of = |shell: &Shell| {
         let [a, b, c, d] = shell.nodes.map(|n| positions[n as usize]);
-        !has_area(a, b, c) && (shell.is_triangle() || !has_area(a, c, d))
+        if !has_area(a, b, c) && (shell.is_triangle() || !has_area(a, c, d)) {
+            Some(DiagnosticKind::ZeroArea)
+        } else if !shell.is_triangle() && has_crossed_edges([a, b, c, d]) {
+            Some(DiagnosticKind::CrossedEdges)
+        } else {
+            None
+        }
     };
-    let flat: Vec<usize> = model
+    let odd: Vec<(usize, DiagnosticKind)> = model
         .shells
         .par_chunks(PIECE)
         .enumerate()
         .flat_map_iter(|(piece, shells)| {
-            let is_flat = &is_flat;
-            let flat = shells
-                .iter()
-                .enumerate()
-                .filter(move |(_, shell)| is_flat(shell));
-            flat.map(move |(i, _)| piece * PIECE + i)
+            let fault_of = &fault_of;
+            let shells = shells.iter().enumerate();
+            shells.filter_map(move |(i, shell)| Some((piece * PIECE + i, fault_of(shell)?)))
         })
         .collect();
-    for index in flat {
+    for (index, kind) in odd {
         let shell = &model.shells[index];
-        let kind = DiagnosticKind::ZeroArea;
         model.diagnostics.push_with(kind, || {
-            let diagnostic = Diagnostic::new(kind, format!("shell {} has no area", shell.id));
+            let id = shell.id;
+            let message = match kind {
+                DiagnosticKind::ZeroArea => format!("shell {id} has no area"),
+                _ => format!(
+                    "the edges of shell {id} cross; two of its nodes are probably exchanged"
+                ),
+            };
+            let diagnostic = Diagnostic::new(kind, message);
             with_position(diagnostic, assembly.shell_position(index, shell))
         });
     }

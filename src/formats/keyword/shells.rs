@@ -361,7 +361,9 @@ impl Reader<'_> {
             let thickness = |index| card.length_or_zero(EIGHT_BY_10, index).unwrap_or(0.0);
             plies.push(thickness(1) * self.offsets.length);
             // `_LONG` has a ply id in place of the second ply, without a thickness.
-            if !card.is_empty_field(EIGHT_BY_10, 4) && is_real_text(card.field(EIGHT_BY_10, 5).text)
+            if ![4, 5]
+                .into_iter()
+                .any(|index| card.is_empty_field(EIGHT_BY_10, index))
             {
                 plies.push(thickness(5) * self.offsets.length);
             }
@@ -387,13 +389,28 @@ impl Reader<'_> {
     }
 }
 
-/// A ply card has up to eight ten-wide fields of which the second is written as a real. A parameter may be any
-/// number: the card is a ply's unless it can be read as a shell's.
+/// A ply card has up to eight ten-wide fields of which the second is its thickness. Where that is written as a whole
+/// number, or a parameter may be any number, the card is a ply's unless it can be read as a shell's.
 pub(crate) fn is_ply(card: &Card<'_>) -> bool {
-    card.n_fields(10) <= 8
-        && is_real_text(card.field(EIGHT_BY_10, 1).text)
-        && card.int(EIGHT_BY_10, 0).is_ok()
-        && !(card.line_text().contains('&') && is_whole_shell(card))
+    if card.n_fields(10) > 8 || card.int(EIGHT_BY_10, 0).is_err() {
+        return false;
+    }
+    let is_real = is_real_text(card.field(EIGHT_BY_10, 1).text);
+    let is_certain = is_real && !card.line_text().contains('&');
+    is_certain || (is_real || is_ply_of_integers(card)) && !is_whole_shell(card)
+}
+
+/// Whether all fields of a card are numbers and the first two stand as those of a ply do. Between commas they may
+/// stand anywhere; in columns they end where the fields end, which those of a shell that lacks nodes do not.
+fn is_ply_of_integers(card: &Card<'_>) -> bool {
+    let is_number = |index: usize| card.real(EIGHT_BY_10, index).is_ok();
+    let ends_with_its_field = |index: usize| {
+        let field = card.field(EIGHT_BY_10, index);
+        field.column + field.text.len() == (index + 1) * card.layout().width(10)
+    };
+    (0..card.n_fields(10)).all(is_number)
+        && !card.is_empty_field(EIGHT_BY_10, 1)
+        && (card.is_free() || [0, 1].into_iter().all(ends_with_its_field))
 }
 
 fn is_real_text(text: &[u8]) -> bool {
@@ -449,7 +466,7 @@ fn shell_card(card: &Card<'_>) -> Result<ShellCard, FieldError> {
 
 /// True if a card is a shell with part and three corners.
 pub(crate) fn is_whole_shell(card: &Card<'_>) -> bool {
-    shell_card(card).is_ok_and(|shell| shell.part != 0 && shell.corners[2] != 0)
+    shell_card(card).is_ok_and(|shell| shell.part != 0 && !shell.corners[..3].contains(&0))
 }
 
 impl ShellCard {

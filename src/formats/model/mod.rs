@@ -1,5 +1,6 @@
 //! What a file holds, whatever its format: nodes, shells, solids, parts, sets, forming results.
 
+mod chosen;
 mod forming;
 mod formulation;
 mod index;
@@ -13,8 +14,8 @@ use std::path::PathBuf;
 pub use forming::{Forming, OtherResults, ShellStrain, ShellStress, StrainPoint, StressPoint};
 pub use formulation::{ShellControl, ShellFormulation};
 pub use index::IdIndex;
-pub(crate) use surface::has_area;
 pub use surface::{PartSummary, Selection, SelectionError, Surface};
+pub(crate) use surface::{has_area, has_crossed_edges};
 pub use titles::RawTitles;
 
 use super::Format;

@@ -189,7 +189,7 @@ impl Model {
         }
     }
 
-    fn chosen(&self, selection: &Selection) -> Result<Chosen, SelectionError> {
+    pub(super) fn chosen(&self, selection: &Selection) -> Result<Chosen, SelectionError> {
         let no_set = |kind, id| SelectionError::NoSuchSet { kind, id };
         match selection {
             Selection::All => Ok(Chosen::Parts(vec![true; self.parts.len()])),
@@ -303,7 +303,8 @@ impl Mean {
     }
 }
 
-enum Chosen {
+/// The chosen elements.
+pub(super) enum Chosen {
     /// By part index.
     Parts(Vec<bool>),
     /// By shell index; no solids.
@@ -311,14 +312,14 @@ enum Chosen {
 }
 
 impl Chosen {
-    fn shell(&self, index: usize, part: u32) -> bool {
+    pub(super) fn shell(&self, index: usize, part: u32) -> bool {
         match self {
             Self::Parts(parts) => parts[part as usize],
             Self::Shells(shells) => shells[index],
         }
     }
 
-    fn solid(&self, part: u32) -> bool {
+    pub(super) fn solid(&self, part: u32) -> bool {
         match self {
             Self::Parts(parts) => parts[part as usize],
             Self::Shells(_) => false,
@@ -451,6 +452,18 @@ impl<'a> Builder<'a> {
         self.surface.mesh = TriMesh::new(positions, self.triangles)?;
         Ok(self.surface)
     }
+}
+
+/// Whether the edges of a quad cross: on either diagonal its halves, which have area, look apart. Those of a warped
+/// quad do so at most a little.
+pub(crate) fn has_crossed_edges([a, b, c, d]: [Point3; 4]) -> bool {
+    let looks_apart = |[p, q, r, s]: [Point3; 4]| {
+        let (first, second) = ((q - p).cross(&(r - p)), (r - p).cross(&(s - p)));
+        first.dot(&second) < -0.5 * first.norm() * second.norm()
+            && has_area(p, q, r)
+            && has_area(p, r, s)
+    };
+    looks_apart([a, b, c, d]) && looks_apart([b, c, d, a])
 }
 
 /// False if the corners lie on a line to the accuracy of their coordinates' differences.

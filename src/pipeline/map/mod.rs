@@ -194,8 +194,8 @@ impl MapRun {
         sum / area
     }
 
-    /// Mean thickness over that of the section where that is unusual: another gauge or another unit.
-    /// Known for sections with a thickness.
+    /// Mean thickness over that of the crash elements, their own or their section's, where that is unusual: another
+    /// gauge or another unit.
     pub fn unusual_thickness(&self) -> Option<f64> {
         let (thickness, _) = self.checks.thickness.as_ref()?;
         let nominal = self.target.nominal_thickness.iter().copied();

@@ -10,7 +10,7 @@ use super::{MapRun, ShownValue};
 use crate::mapping::Status;
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::forming_values::FormingValue;
-use crate::text::{Lengths, counted, fixed, percent, signed_percent};
+use crate::text::{Lengths, counted, fixed, length, percent, signed_percent};
 
 /// Share of the area that is to carry values where no other is asked for.
 pub(in crate::pipeline) const LEAST_AREA: f64 = 0.95;
@@ -364,13 +364,22 @@ fn beside_section(run: &MapRun) -> Option<CheckRecord> {
     let [least, most] = POSSIBLE_THICKNESS;
     Some(CheckRecord {
         name: "Thickness / section".to_owned(),
-        found: format!("{}–{}", fixed(low, 2), fixed(high, 2)),
+        found: format!("{}–{}", thickness_ratio(low), thickness_ratio(high)),
         limit: format!("{} to {}", fixed(least, 1), fixed(most, 0)),
         is_met: Some(low >= least && high <= most),
         reason: None,
         picture: CheckPicture::Thickness,
         worst: Some(worst),
     })
+}
+
+/// With two decimals, and three digits where that leaves nothing: thicknesses in another unit are far apart.
+fn thickness_ratio(ratio: f64) -> String {
+    if ratio < 0.1 {
+        length(ratio)
+    } else {
+        fixed(ratio, 2)
+    }
 }
 
 /// Thickness times area of the crash elements with values beside that of the stamped elements they cover.
@@ -441,6 +450,12 @@ fn largest(run: &MapRun, number: impl Fn(usize) -> f64) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn thicknesses_in_another_unit_show_their_digits() {
+        let ratios = [0.000_98, 0.062, 0.876, 1.18].map(thickness_ratio);
+        assert_eq!(ratios, ["0.000980", "0.0620", "0.88", "1.18"]);
+    }
 
     #[test]
     fn a_change_is_told_only_of_what_was_there() {

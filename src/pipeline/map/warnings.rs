@@ -62,7 +62,7 @@ pub(super) fn warnings(
     warnings.extend(unknown_law(run));
     if let Some(ratio) = run.unusual_thickness() {
         warnings.push(format!(
-            "the mapped thickness is {} times that of the section; another gauge or another unit?",
+            "the mapped thickness is {} times that of the crash elements; another gauge or another unit?",
             length(ratio)
         ));
     }

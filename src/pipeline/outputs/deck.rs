@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::formats::keyword::write::{WriteOptions, write};
+use crate::formats::model::Sets;
 use crate::formats::moved::moved;
 use crate::formats::{Format, Model, obj, ply, stl};
 use crate::geometry::{Similarity, TriMesh};
@@ -14,7 +15,7 @@ use crate::report::build_id;
 use crate::text::counted;
 
 /// A mesh in a format.
-pub fn mesh_bytes(
+fn mesh_bytes(
     format: Format,
     mesh: &TriMesh,
     title: &str,
@@ -32,7 +33,7 @@ pub fn mesh_bytes(
     })
 }
 
-/// A part, moved, with its own ids. Its unit factor is applied as well, so the bytes are in the
+/// The chosen elements, moved, with their own ids. The unit factor is applied as well, so the bytes are in the
 /// crash model's unit. Mesh formats without ids get the matched surface only.
 pub fn part_bytes(
     format: Format,
@@ -46,7 +47,17 @@ pub fn part_bytes(
         return mesh_bytes(format, &mesh, &comments.join(", "), monitor);
     }
     let unit = Similarity::from_scale(part.settings.length_factor);
-    let model = moved(&part.model, &world_from_part.after(&unit));
+    let selection = &part.settings.selection;
+    let chosen = part.model.of_chosen(selection).map_err(|error| {
+        let path = part.path.clone();
+        PipelineError::Selection {
+            error,
+            near: String::new(),
+            path,
+            diagnostic: None,
+        }
+    })?;
+    let model = moved(&chosen, &world_from_part.after(&unit));
     let options = WriteOptions {
         comments: comments.to_vec(),
         ..WriteOptions::default()
@@ -54,9 +65,65 @@ pub fn part_bytes(
     Ok(write(&model, &options, monitor)?)
 }
 
+/// A reduced mesh of a part, moved. As a deck it has one part with the mean thickness of the chosen elements; id and
+/// title are the part's where one was chosen.
+pub fn reduced_bytes(
+    format: Format,
+    part: &LoadedPart,
+    mesh: &TriMesh,
+    world_from_part: &Similarity,
+    monitor: &Monitor,
+) -> Result<Vec<u8>, PipelineError> {
+    let mesh = mesh.transformed(world_from_part);
+    let title = format!("{}, reduced", part.file_name());
+    if format != Format::Keyword {
+        return mesh_bytes(format, &mesh, &title, monitor);
+    }
+    let mut model = Model::from_mesh(&mesh, title);
+    model.raw_titles = part.model.raw_titles.clone();
+    let only = part.chosen_part_ids();
+    for own in &mut model.parts {
+        let thickness = part.mean_thickness();
+        own.thickness = thickness.map(|thickness| [thickness * world_from_part.scale; 4]);
+        if let [id] = only[..]
+            && let Some(index) = part.model.part_index(id)
+        {
+            own.id = id;
+            own.title
+                .clone_from(&part.model.parts[index as usize].title);
+        }
+    }
+    let options = WriteOptions {
+        comments: reduced_lacks(part).into_iter().collect(),
+        ..WriteOptions::default()
+    };
+    Ok(write(&model, &options, monitor)?)
+}
+
+/// What a deck of a reduced part lacks that its file has, in words; `None` for nothing but ids.
+pub fn reduced_lacks(part: &LoadedPart) -> Option<String> {
+    let model = &part.model;
+    let lacks = [
+        (!model.forming.is_empty(), "forming results"),
+        (
+            !model.shell_extras.is_empty(),
+            "thicknesses of the elements, whose mean the section has",
+        ),
+        (part.chosen_part_ids().len() > 1, "the division into parts"),
+        (!model.materials.is_empty(), "materials"),
+        (!model.sections.is_empty(), "formulations of the sections"),
+        (model.sets != Sets::default(), "sets"),
+    ];
+    let lacks: Vec<&str> = lacks
+        .into_iter()
+        .filter_map(|(has, what)| has.then_some(what))
+        .collect();
+    (!lacks.is_empty()).then(|| format!("left out of the deck: {}", lacks.join(", ")))
+}
+
 /// What a deck of a part lacks that the deck it was read from has, in words; `None` for nothing.
 pub fn left_out(part: &LoadedPart) -> Option<String> {
-    let model = &part.model;
+    let model = part.model.of_chosen(&part.settings.selection).ok()?;
     let of_shells = model.shell_extras.iter();
     let n_stacks = of_shells.filter(|extra| extra.plies.is_some()).count();
     let n_parts = model

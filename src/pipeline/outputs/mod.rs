@@ -375,8 +375,13 @@ impl Output {
                 let format = format.ok_or(PipelineError::Lacks("a mesh format"))?;
                 let bytes = mesh.make(input, format, monitor)?;
                 let part = input.parts.get(mesh.role()).as_deref();
-                let whole = part.filter(|_| format == Format::Keyword && !mesh.is_reduced());
-                let notes = whole.and_then(deck::left_out).into_iter().collect();
+                let of_deck = part.filter(|_| format == Format::Keyword);
+                let lacks = if mesh.is_reduced() {
+                    deck::reduced_lacks
+                } else {
+                    deck::left_out
+                };
+                let notes = of_deck.and_then(lacks).into_iter().collect();
                 return Ok(Made { bytes, notes });
             }
             Self::Mapped(kind) => return mapped::deck(kind, input, monitor),
@@ -444,8 +449,7 @@ impl MeshOutput {
         if self.is_reduced() {
             let mesh = input.reduced.get(role).as_deref();
             let mesh = mesh.ok_or(PipelineError::Lacks("a level of reduction"))?;
-            let title = format!("{}, reduced", part.file_name());
-            return deck::mesh_bytes(format, &mesh.transformed(&pose), &title, monitor);
+            return deck::reduced_bytes(format, part, mesh, &pose, monitor);
         }
         let units = PairUnits::of(input.parts.as_ref().map(Option::as_deref));
         let lines = deck::head_lines(part, &units);

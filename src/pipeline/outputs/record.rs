@@ -2,7 +2,7 @@
 
 use crate::pipeline::load::{LoadedPart, same_parts_line};
 use crate::pipeline::match_parts::MatchRun;
-use crate::pipeline::units::PairUnits;
+use crate::pipeline::units::{PairUnits, doubts_of_set_units};
 use crate::report::command_line::CommandLine;
 use crate::report::{
     DiagnosticInfo, FileRecord, IncludedFile, MatchRecord, RecordContext, TimingsRecord,
@@ -101,6 +101,7 @@ fn warnings(run: &MatchRun, parts: PerRole<&LoadedPart>) -> Vec<String> {
             warnings.push(format!("{name} was scaled by {factor} before matching"));
         }
     }
+    warnings.extend(doubts_of_set_units(parts));
     warnings.extend(PairUnits::stress_warning(parts));
     warnings
 }

@@ -154,6 +154,14 @@ fn what_cannot_be_written_is_refused() {
     for &form in CardForm::ALL {
         let error = write(form, &scaled, &options).unwrap_err();
         assert_eq!(error, CardError::Scaled { scale: 25.4 });
+        assert!(error.to_string().contains("the unit of the crash model"));
+        let nearly_rigid = Similarity::from_scale(1.000_008_3);
+        let error = write(form, &nearly_rigid, &options).unwrap_err();
+        assert!(
+            error
+                .to_string()
+                .contains("match again with a rigid motion")
+        );
     }
     let id = 12_345_678_901;
     let options = CardOptions {
