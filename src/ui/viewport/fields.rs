@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::map_fields;
 use super::meshes::{MeshKey, ShownMesh};
 use super::visible_parts::PartInstance;
-use crate::app::{AppState, ColorBy, MapPicture};
+use crate::app::{AppState, ColorBy, Coloring, MapPicture};
 use crate::assess::Assessment;
 use crate::colormap::{ColorMap, ColorScale};
 use crate::geometry::{Point3, Similarity, TriMesh};
@@ -56,6 +56,12 @@ impl FieldKind {
     /// True for distances with a side.
     pub fn is_signed(self) -> bool {
         self == Self::Deviation
+    }
+
+    /// True for what the colours of values with a sign are put on, besides the deviation.
+    pub fn has_signed_colors(self) -> bool {
+        use MapPicture::{Angle, Confidence, File, Status};
+        matches!(self, Self::Map(picture) if !matches!(picture, Angle | Confidence | File | Status))
     }
 
     /// True for differences of a quantity, which may all be rounding.
@@ -198,21 +204,28 @@ impl FieldStore {
 
     /// The scale of what a window shows; the same in both if they show the same.
     pub fn scale(&self, window: Role, state: &AppState) -> Option<ColorScale> {
-        let kind = FieldKind::of(state.color_by(window))?;
-        let coloring = &state.view.display.coloring;
-        match kind {
-            FieldKind::Deviation => return Some(coloring.deviation_scale(state.comparison()?)),
-            FieldKind::Overlap => return Some(ColorScale::new(ColorMap::Classes, 0.0, 1.0)),
-            FieldKind::Map(MapPicture::Status) => return Some(ColorScale::statuses()),
-            FieldKind::Map(MapPicture::File) => return Some(ColorScale::files()),
-            FieldKind::Map(MapPicture::Confidence) => {
-                return Some(coloring.on_scale(ColorScale::new(ColorMap::Viridis, 0.0, 1.0)));
-            }
+        let by = state.color_by(window);
+        let kind = FieldKind::of(by)?;
+        let display = &state.view.display;
+        Some(match kind {
+            FieldKind::Deviation => display.coloring.deviation_scale(state.comparison()?),
+            FieldKind::Overlap => ColorScale::new(ColorMap::Classes, 0.0, 1.0),
+            FieldKind::Map(MapPicture::Status) => ColorScale::statuses(),
+            FieldKind::Map(MapPicture::File) => ColorScale::files(),
             FieldKind::Thickness
             | FieldKind::ReductionError
             | FieldKind::Uncertainty
             | FieldKind::Forming(_)
-            | FieldKind::Map(_) => {}
+            | FieldKind::Map(_) => {
+                display.limited(by, self.scale_of_values(kind, &display.coloring)?)
+            }
+        })
+    }
+
+    /// The scale of a map as its values give it.
+    fn scale_of_values(&self, kind: FieldKind, coloring: &Coloring) -> Option<ColorScale> {
+        if kind == FieldKind::Map(MapPicture::Confidence) {
+            return Some(coloring.on_scale(ColorScale::new(ColorMap::Viridis, 0.0, 1.0)));
         }
         let ranges = self.ranges.iter().filter_map(|(_, range)| *range);
         let [low, high] = common_range(ranges.filter(|(of, _)| *of == kind).map(|(_, r)| r))?;
@@ -221,7 +234,7 @@ impl FieldStore {
             let scale = ColorScale::new(ColorMap::Viridis, 0.0, high.max(0.1));
             return Some(coloring.on_scale(scale));
         }
-        if let FieldKind::Map(_) = kind {
+        if kind.has_signed_colors() {
             return Some(coloring.on_signed_scale(low.abs().max(high.abs())));
         }
         let low = match kind {

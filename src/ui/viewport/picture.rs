@@ -360,7 +360,10 @@ fn hit_layer(
         let look = looks.get(index as usize).copied();
         let point = pose.apply(&hit.point) + drawable.offset;
         let is_cut_away = clip.is_some_and(|plane| plane.distance(&point) > 0.0);
-        if look.unwrap_or(PartLook::default()).visible && !is_cut_away {
+        let value = value_at(layer, &hit);
+        let scale = layer.field.as_ref().map(|field| field.scale);
+        let is_beyond = value.is_some_and(|value| scale.is_some_and(|scale| scale.hides(value)));
+        if look.unwrap_or(PartLook::default()).visible && !is_cut_away && !is_beyond {
             let (node, node_id) = layer.mesh.nearest_node(&hit);
             let part = layer.mesh.part_id(index);
             let is_full = layer.mesh.source.level.is_none();
@@ -378,7 +381,7 @@ fn hit_layer(
                 further: layer.instance.further.clone(),
                 node: pose.apply(&node),
                 node_id,
-                value: value_at(layer, &hit),
+                value,
             };
             return Some(((point - ray.origin).norm(), hit));
         }
