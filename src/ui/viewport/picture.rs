@@ -205,6 +205,11 @@ impl Picture {
         })
     }
 
+    /// True if the section cuts away what lies at a point of the window.
+    pub fn is_cut_away(&self, point: &Point3) -> bool {
+        self.clip.is_some_and(|plane| plane.distance(point) > 0.0)
+    }
+
     /// True if nothing is drawn.
     pub fn is_empty(&self) -> bool {
         self.layers.is_empty()
