@@ -10,7 +10,7 @@ use crate::app::{AppState, ColorBy, PartRef, ShownFile};
 use crate::colormap::{ColorScale, Rgb};
 use crate::geometry::camera::{ScreenSize, ViewRay};
 use crate::geometry::{Aabb, Camera, Plane, Point3, Similarity, Vector3};
-use crate::render::{Drawable, FieldLook, PartLook, Scene, Section, Sheet};
+use crate::render::{Drawable, FieldLook, PartLook, Polyline, Scene, Section, Sheet};
 use crate::role::Role;
 use crate::ui::theme::Look;
 
@@ -168,9 +168,12 @@ impl Picture {
     }
 
     /// Adds what is only seen: nothing is found at its places.
-    pub fn add(&mut self, unused: Vec<Drawable>) {
+    pub fn add(&mut self, unused: Vec<Drawable>, outlines: Vec<Polyline>) {
         if !unused.is_empty() {
-            Arc::make_mut(&mut self.scene).drawables.extend(unused);
+            let scene = Arc::make_mut(&mut self.scene);
+            scene.drawables.extend(unused);
+            // Below those of the parts that are used.
+            scene.overlay.polylines.splice(0..0, outlines);
         }
     }
 
