@@ -355,6 +355,8 @@ fn the_legend_of_a_mapped_quantity_has_its_figures() {
     click(&mut window, "Unfold the legend (crash)");
     window.run_steps(4);
     assert_eq!(figures(&window), 3);
+    let counts = |text: &Painted| text.text.ends_with(" elements");
+    assert!(texts(&window).iter().any(counts));
     let found = faults(&window);
     assert!(found.is_empty(), "{}", found.join("\n"));
 }

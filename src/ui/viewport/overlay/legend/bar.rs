@@ -73,8 +73,7 @@ pub(super) fn plain(
     menu::set(over, display, commands);
 }
 
-/// Extremes and mean of the values, and of how many they are. Those at nodes are means of the elements around, so that
-/// they differ from those of the elements, which the report states.
+/// Extremes of the values and their mean over the area, and of how many elements or nodes they are.
 fn numbers(ui: &mut Ui, over: &Overlay<'_>, of: &Summary, (scale, room): (&ColorScale, Rect)) {
     let number = if scale.min < 0.0 { signed } else { length };
     let values = if of.is_of_elements {
