@@ -119,11 +119,24 @@ fn plate_place((window, taken): (Rect, &[Rect]), line: [Pos2; 2], size: Vec2) ->
 /// True if the line runs through the plate, or touches it nearly.
 fn is_crossed(plate: &Rect, [from, to]: [Pos2; 2]) -> bool {
     let plate = plate.expand(AIR);
-    let along = (to - from).normalized();
-    if along == Vec2::ZERO {
-        return plate.contains(from);
+    // Which part of the line lies between the edges, as shares of it.
+    let mut part = [0.0_f32, 1.0];
+    for axis in 0..2 {
+        let (low, high) = (plate.min[axis], plate.max[axis]);
+        let (at, way) = (from[axis], to[axis] - from[axis]);
+        if way == 0.0 {
+            if at < low || at > high {
+                return false;
+            }
+            continue;
+        }
+        let ends = [(low - at) / way, (high - at) / way];
+        part = [
+            part[0].max(ends[0].min(ends[1])),
+            part[1].min(ends[0].max(ends[1])),
+        ];
     }
-    plate.intersects_ray(from, along) && plate.intersects_ray(to, -along)
+    part[0] <= part[1]
 }
 
 /// A plate beside a line, which it does not touch: where along it, above (1) or below (−1), how much farther away than
