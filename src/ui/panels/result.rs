@@ -10,7 +10,7 @@ use crate::assess::{Ambiguity, Coverage, OneSided, Reason};
 use crate::jobs::Stamp;
 use crate::registration::{group_starts, limits};
 use crate::report::distances::{OVERLAP_HELP, OVERLAP_SPREAD};
-use crate::report::{DIRECTION, PoseRecord, few_agree_words, number, start_counts};
+use crate::report::{DIRECTION, PoseRecord, few_agree_words, number, start_kinds};
 use crate::role::{PerRole, Role};
 use crate::settings::setting;
 use crate::text::{capital, fixed, sentence, vector, whole_percent};
@@ -180,7 +180,12 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
     let is_unit_in_doubt = state.is_unit_in_doubt();
     let n_told = if is_unit_in_doubt { 1 } else { 3 };
     for reason in assessment.reasons.iter().take(n_told) {
-        paragraph(ui, sentence(&reason.words(lengths)));
+        let words = if is_unit_in_doubt {
+            reason.words(lengths)
+        } else {
+            reason.words_beside_figures(lengths)
+        };
+        paragraph(ui, sentence(&words));
     }
     if is_unit_in_doubt {
         return;
@@ -318,7 +323,7 @@ fn figures_ui(ui: &mut Ui, state: &AppState, result: &MatchResult) {
             "Converged starts",
             &format!("{n_same} of {}", outcome.starts.len()),
         );
-        caption(ui, capital(&start_counts(&outcome.starts)));
+        caption(ui, capital(&start_kinds(&outcome.starts)));
         if let Some(words) = few_agree_words(&outcome.starts, n_same) {
             caption(ui, capital(&words));
         }
@@ -453,9 +458,13 @@ fn grid_ui(ui: &mut Ui, rows: &[[f64; 4]; 4]) {
             if !fits || column == 3 {
                 ui.end_row();
             }
+            if !fits && column == 3 {
+                // Air between the rows of the matrix.
+                ui.allocate_space(vec2(1.0, 2.0));
+                ui.end_row();
+            }
         }
     });
-    ui.add_space(2.0);
     digits_grid(ui, "translation grid", |ui| {
         for (axis, text) in Axis::ALL.into_iter().zip(shift) {
             caption(ui, format!("t {}", axis.letter()));
