@@ -123,13 +123,26 @@ impl Reason {
                  within {}, and {}",
                 percent(*overlap),
                 lengths.bound(*p95),
-                if *rivals_sought {
-                    "no other pose fits nearly as well"
-                } else {
-                    "other poses were not looked for everywhere"
-                }
+                rivals_words(*rivals_sought)
             ),
         }
+    }
+
+    /// The same where overlaps and distances stand beside it, which it then leaves out.
+    pub fn words_beside_figures(&self, lengths: Lengths) -> String {
+        match self {
+            Self::BothOverhang { .. } => "neither part contains the other".to_owned(),
+            Self::InOrder { rivals_sought, .. } => rivals_words(*rivals_sought).to_owned(),
+            _ => self.words(lengths),
+        }
+    }
+}
+
+fn rivals_words(were_sought: bool) -> &'static str {
+    if were_sought {
+        "no other pose fits nearly as well"
+    } else {
+        "other poses were not looked for everywhere"
     }
 }
 
@@ -532,6 +545,8 @@ fn axis_words(direction: &Vector3) -> String {
 #[cfg(test)]
 mod tests {
     use super::{as_well, error_beside};
+    use crate::assess::Reason;
+    use crate::text::Lengths;
 
     #[test]
     fn equally_is_said_only_of_what_rounds_to_no_difference() {
@@ -544,6 +559,31 @@ mod tests {
         ] {
             assert_eq!(as_well(ratio), words);
         }
+    }
+
+    /// What stands beside them as figures is not said in the sentences too; all else is.
+    #[test]
+    fn sentences_beside_figures_leave_these_out() {
+        let lengths = Lengths::default();
+        let good = Reason::InOrder {
+            overlap: 0.87,
+            p95: 0.4,
+            rivals_sought: true,
+        };
+        assert!(good.words(lengths).contains("87"));
+        let beside = good.words_beside_figures(lengths);
+        assert_eq!(beside, "no other pose fits nearly as well");
+        assert!(good.words(lengths).ends_with(&beside));
+        let both = Reason::BothOverhang {
+            source: 0.61,
+            target: 0.55,
+        };
+        let beside = both.words_beside_figures(lengths);
+        assert_eq!(beside, "neither part contains the other");
+        assert_eq!(
+            Reason::Stopped.words_beside_figures(lengths),
+            Reason::Stopped.words(lengths)
+        );
     }
 
     #[test]

@@ -24,6 +24,8 @@ pub struct ColorScale {
     pub reversed: bool,
     /// A pattern shows the sign of values beyond the tolerance, for those who do not see the hues.
     pub has_pattern: bool,
+    /// What has a value beyond the ends is not drawn.
+    pub hides_beyond: bool,
 }
 
 /// What is drawn over the colour of a value.
@@ -70,6 +72,7 @@ impl ColorScale {
             n_bands: None,
             reversed: false,
             has_pattern: false,
+            hides_beyond: false,
         }
     }
 
@@ -112,6 +115,11 @@ impl ColorScale {
         } else {
             t.clamp(0.0, 1.0)
         }
+    }
+
+    /// True for a value beyond the ends whose place is not drawn.
+    pub fn hides(&self, value: f64) -> bool {
+        self.hides_beyond && (value < self.min || value > self.max)
     }
 
     /// The value at a place between the ends.
@@ -264,6 +272,18 @@ mod tests {
         assert_eq!(colors[999], ColorMap::Viridis.sample(1.0));
         colors.dedup();
         assert_eq!(colors.len(), 5);
+    }
+
+    #[test]
+    fn values_beyond_the_ends_are_hidden_on_request() {
+        let scale = ColorScale::new(ColorMap::Viridis, 0.7, 0.9);
+        let hiding = ColorScale {
+            hides_beyond: true,
+            ..scale
+        };
+        let hidden = [0.6, 0.7, 0.8, 0.9, 1.0, f64::NAN].map(|value| hiding.hides(value));
+        assert_eq!(hidden, [true, false, false, false, true, false]);
+        assert!(!scale.hides(0.6));
     }
 
     #[test]

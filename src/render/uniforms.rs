@@ -195,6 +195,10 @@ fn switches(drawable: &Drawable, other_sheet: Option<Rgb>) -> u32 {
         sheet == Some(Sheet::First),
         sheet == Some(Sheet::Second),
         !drawable.style.surface,
+        drawable
+            .field
+            .as_ref()
+            .is_some_and(|field| field.scale.hides_beyond),
     ]
     .iter()
     .enumerate()

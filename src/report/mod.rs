@@ -24,6 +24,6 @@ pub use record::{
     OverlapRecord, Parameters, RecordContext, TimingsRecord, UnitsRecord, build_id, role_of,
 };
 pub use starts::{
-    few_agree_words, outcome_words, start_counts, start_data_words, start_kind_help,
-    start_kind_words, start_name,
+    few_agree_words, outcome_words, start_data_words, start_kind_help, start_kind_words,
+    start_kinds, start_name,
 };

@@ -83,8 +83,8 @@ pub fn start_kind_help(kind: StartKind) -> &'static str {
     }
 }
 
-/// How many starts there were and of which kinds: "22 starts (18 by surface normals, 4 by the wide search)".
-pub fn start_counts(starts: &[StartRecord]) -> String {
+/// Of which kinds the starts were: "18 by surface normals, 4 by the wide search"; of a single one its kind alone.
+pub fn start_kinds(starts: &[StartRecord]) -> String {
     let mut counts: Vec<(&str, usize)> = Vec::new();
     for start in starts {
         let kind = match start.kind {
@@ -103,14 +103,14 @@ pub fn start_counts(starts: &[StartRecord]) -> String {
             None => counts.push((kind, 1)),
         }
     }
+    if starts.len() == 1 {
+        return counts.iter().map(|(kind, _)| *kind).collect();
+    }
     let parts: Vec<String> = counts
         .iter()
         .map(|(kind, n)| format!("{n} {kind}"))
         .collect();
-    match starts.len() {
-        1 => format!("1 start ({})", counts.first().map_or("", |(kind, _)| *kind)),
-        n => format!("{} ({})", counted(n, "start"), parts.join(", ")),
-    }
+    parts.join(", ")
 }
 
 /// Fewer agreeing starts than this are explained.

@@ -259,8 +259,16 @@ fn pictures_of_a_mapping_are_chosen_and_say_what_the_values_say() {
     let text = serde_json::to_string(&window.state.view.display).unwrap();
     let back: shapematch::app::Display = serde_json::from_str(&text).unwrap();
     assert_eq!(back, window.state.view.display);
+    // Limits of the difference are those of the quantity and layer that they were set for.
+    let limits = [
+        (ColorBy::MapDifference, [-0.1, 0.1]),
+        (ColorBy::Thickness, [0.5, 1.0]),
+    ];
+    window.state.view.display.limits = limits.into_iter().collect();
     window.act(Action::NextLayer);
     assert_eq!(window.state.view.display.mapped.layer, None);
+    let kept: Vec<_> = window.state.view.display.limits.keys().collect();
+    assert_eq!(kept, [&ColorBy::Thickness]);
 
     // In one window the parts would hide each other: the stamped one stands beside.
     window.act(Action::ToggleMoveOver);

@@ -2,6 +2,7 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use shapematch::geometry::camera::ScreenSize;
 use shapematch::role::Role;
 use shapematch::ui::Shell;
 
@@ -92,4 +93,43 @@ fn two_clicks_draw_a_distance_and_escape_takes_it_away() {
     window.run_steps(2);
     assert_eq!(window.state().state().inspect.distance, None);
     assert_eq!(told(&window), [] as [String; 0]);
+}
+
+/// The pointer in a round hole takes its centre, and the plate says so.
+#[test]
+fn a_distance_from_a_hole_begins_at_its_centre() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    window.key_press(egui::Key::I);
+    window.run_steps(30);
+    let state = window.state().state();
+    let part = state.document.part(Role::Crash).expect("loaded");
+    let hole = part.facts.landmarks.holes[0];
+    let canvas = window.get_by(|node| {
+        let label = node.label();
+        node.role() == egui::accesskit::Role::Canvas
+            && label.is_some_and(|label| label.starts_with("Crash part"))
+    });
+    let size = canvas.rect().size();
+    let screen = ScreenSize::new(size.x.round() as u32, size.y.round() as u32);
+    let camera = state.view.cameras.crash;
+    let seen = camera.project(&hole.center, screen).expect("in front");
+    let middle = egui::vec2(seen.x as f32, seen.y as f32) - 0.5 * size;
+    // A little beside it.
+    click_in(&mut window, Role::Crash, middle + egui::vec2(3.0, 2.0));
+    let ends = window.state().state().distance_ends();
+    let [(role, point)] = ends[..] else {
+        panic!("{ends:?}");
+    };
+    assert_eq!(role, Role::Crash);
+    assert!((point - hole.center).norm() < 1e-9 * hole.center.coords.norm().max(1.0));
+    click_in(&mut window, Role::Crash, [-60.0, -50.0].into());
+    assert!(is_painted(&window, "from centre of hole"));
+    let told = told(&window);
+    assert!(
+        told.iter()
+            .all(|text| text.ends_with(", from centre of hole"))
+            && told.len() == 1
+    );
 }

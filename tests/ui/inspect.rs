@@ -132,6 +132,61 @@ fn the_limits_of_the_colours_are_dragged_and_stay_symmetric() {
     assert_eq!(starts_with(&harness, "Tolerance (stamped)"), 1);
 }
 
+/// A window with the legend of a map unfolded.
+fn unfolded(by: ColorBy) -> Harness<'static, Desk> {
+    let mut desk = with_map();
+    desk.state.view.display.color_by = by;
+    let mut harness = Harness::builder()
+        .with_size(vec2(1000.0, 620.0))
+        .build_ui_state(show, desk);
+    for _ in 0..500 {
+        harness.run_steps(1);
+        if let Some(button) = harness.query_by_label("Unfold the legend (stamped)") {
+            button.click_accesskit();
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    harness.run_steps(3);
+    harness
+}
+
+#[test]
+fn what_lies_beyond_the_limits_is_hidden_where_they_are_set() {
+    for by in [ColorBy::Deviation, ColorBy::Thickness] {
+        let mut harness = unfolded(by);
+        let display = |harness: &Harness<'_, Desk>| harness.state().state.view.display.clone();
+        assert!(!display(&harness).coloring.hides_beyond);
+        let name = "Hide outside the limits (stamped)";
+        harness.get_by_label(name).click_accesskit();
+        harness.run_steps(2);
+        assert!(display(&harness).coloring.hides_beyond);
+        let grip = harness.get_by_label("Upper limit of the colours (stamped)");
+        let from = grip.rect().center();
+        let to = from + vec2(0.0, 30.0);
+        drag(&mut harness, PointerButton::Primary, from, to);
+        let after = display(&harness);
+        let is_of_deviation = by == ColorBy::Deviation;
+        assert_eq!(after.coloring.limits.is_some(), is_of_deviation);
+        assert_eq!(after.limits.contains_key(&by), !is_of_deviation);
+        // A project keeps both.
+        let text = serde_json::to_string(&after).unwrap();
+        let back: shapematch::app::Display = serde_json::from_str(&text).unwrap();
+        assert_eq!(back, after);
+        // The folded legend says that not everything is drawn.
+        let n_notes = |harness: &Harness<'_, Desk>| {
+            let notes = harness.query_all_by(|node| node.value().as_deref() == Some("rest hidden"));
+            notes.count()
+        };
+        assert_eq!(n_notes(&harness), 0);
+        harness
+            .get_by_label("Fold the legend (stamped)")
+            .click_accesskit();
+        harness.run_steps(2);
+        assert_eq!(n_notes(&harness), 1);
+    }
+}
+
 /// Both windows with the section laid flat below them.
 fn show_with_drawing(ui: &mut egui::Ui, desk: &mut Desk) {
     let (upper, lower) = ui.max_rect().split_top_bottom_at_fraction(0.7);

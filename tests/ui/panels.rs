@@ -312,3 +312,34 @@ fn the_header_of_a_folded_section_says_that_the_unit_is_in_doubt() {
     let mut texts = texts.iter().map(|painted| painted.text.as_str());
     assert!(texts.any(|text| text == "⚠ unit in doubt"));
 }
+
+/// The card of a result and the header of its section say each figure once.
+#[test]
+fn each_figure_of_a_match_is_said_once_beside_the_windows() {
+    let mut window = matched();
+    window.set_size(egui::vec2(1280.0, 1400.0));
+    window.run_steps(8);
+    let state = window.state().state();
+    let coverage = *state.result_coverage().expect("a result");
+    let lengths = state.lengths();
+    let p95 = lengths.of(coverage.p95());
+    let rms = format!("{} · ", lengths.number(coverage.rmse()));
+    let texts = texts(&window);
+    let count = |part: &str| {
+        // The log below the windows is as wide as they are.
+        let said = texts.iter().filter(|text| text.clip.right() < 400.0);
+        said.filter(|text| text.text.contains(part)).count()
+    };
+    assert_eq!(count(&p95), 1, "{p95}");
+    assert_eq!(count(&rms), 1, "{rms}");
+    assert_eq!(count("RMS"), 1);
+    assert_eq!(count("✓ GOOD"), 1);
+    assert_eq!(count("lies within"), 0);
+    let n_starts = state
+        .document
+        .result
+        .as_ref()
+        .map(|result| result.run.outcome.starts.len());
+    assert_eq!(count(&format!("{} starts", n_starts.expect("a result"))), 0);
+    assert_eq!(count(" pose fits nearly as well"), 1);
+}

@@ -416,6 +416,52 @@ fn fields_take_the_colours_of_their_scale() {
     }
 }
 
+/// A field from 0 on the left to 1 on the right of a square, of which only the middle is drawn.
+#[test]
+fn values_beyond_the_limits_are_neither_drawn_nor_picked() {
+    let mut drawable = plain(&square(Point3::origin()), BLUE);
+    let whole = ColorScale::new(ColorMap::Rainbow, 0.25, 0.75);
+    let look = |scale, values: &[f32]| FieldLook {
+        values: values.into(),
+        is_by_corner: false,
+        scale,
+    };
+    let cut = ColorScale {
+        hides_beyond: true,
+        ..whole
+    };
+    let camera = from(StandardView::Top, Point3::origin());
+    let mut covered = |scale, values: &[f32]| {
+        drawable.field = Some(look(scale, values));
+        let scene = scene(vec![drawable.clone()]);
+        let shot = picture(&scene, &camera);
+        [-0.9, -0.6, -0.4, 0.0, 0.4, 0.6, 0.9].map(|x| {
+            let point = Point3::new(x, 0.3, 0.0);
+            let seen = camera.project(&point, ScreenSize::new(SIZE[0], SIZE[1]));
+            let frame = Frame {
+                scene: &scene,
+                camera: &camera,
+                size: SIZE,
+            };
+            let mut renderer = renderer();
+            let device = renderer.device().clone();
+            let seen = seen.unwrap();
+            let hit = renderer.pick(&frame, [seen.x, seen.y]).wait(&device);
+            let is_picked = hit.unwrap().is_some_and(|hit| hit.exact);
+            let is_drawn = color_at(&shot, &camera, &point)[3] == 255;
+            assert_eq!(is_picked, is_drawn, "{x}");
+            is_drawn
+        })
+    };
+    let rising = [0.0, 1.0, 1.0, 0.0];
+    assert_eq!(covered(whole, &rising), [true; 7]);
+    let middle = [false, false, true, true, true, false, false];
+    assert_eq!(covered(cut, &rising), middle);
+    // Values at a limit, and places without one, stay.
+    assert_eq!(covered(cut, &[0.75; 4]), [true; 7]);
+    assert_eq!(covered(cut, &[f32::NAN; 4]), [true; 7]);
+}
+
 #[test]
 fn picking_names_the_triangle_in_front() {
     let size = SIZE;

@@ -27,6 +27,8 @@ pub struct Coloring {
     pub limits: Option<[f64; 2]>,
     /// Half width of the neutral band; `None` follows the values.
     pub tolerance: Option<f64>,
+    /// What lies beyond the limits of any map of values is not drawn.
+    pub hides_beyond: bool,
 }
 
 impl Default for Coloring {
@@ -43,6 +45,7 @@ impl Default for Coloring {
             has_pattern: false,
             limits: None,
             tolerance: None,
+            hides_beyond: false,
         }
     }
 }
@@ -96,6 +99,7 @@ impl Coloring {
             n_bands: self.n_bands,
             reversed: self.is_reversed,
             has_pattern: self.has_pattern,
+            hides_beyond: self.hides_beyond,
             ..ColorScale::new(if is_signed { self.signed_map } else { self.map }, min, max)
         }
     }

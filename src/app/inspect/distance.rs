@@ -7,6 +7,9 @@ use crate::app::{AppState, Document};
 use crate::geometry::{Point3, Vector3};
 use crate::role::Role;
 
+/// A point within this share of its radius is the centre of a hole: what was picked went through poses.
+const AT_CENTER: f64 = 1e-6;
+
 /// A point to measure from or to. It goes with its part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct DistanceEnd {
@@ -92,6 +95,25 @@ impl AppState {
             Role::Stamped => self.shown_pose().apply(&point),
         });
         to - from
+    }
+
+    /// Which of two ends of a distance are centres of round holes, if any is.
+    pub fn distance_holes(&self, ends: [(Role, Point3); 2]) -> Option<&'static str> {
+        match ends.map(|(role, point)| self.is_hole_center(role, &point)) {
+            [true, true] => Some("centre of hole to centre of hole"),
+            [true, false] => Some("from centre of hole"),
+            [false, true] => Some("to centre of hole"),
+            [false, false] => None,
+        }
+    }
+
+    fn is_hole_center(&self, role: Role, point: &Point3) -> bool {
+        let part = self.document.part(role);
+        let holes = part
+            .into_iter()
+            .flat_map(|part| &part.facts.landmarks.holes);
+        let mut holes = holes.map(|hole| (hole.center - point).norm() <= AT_CENTER * hole.radius);
+        holes.any(|is_there| is_there)
     }
 
     /// The distance between two points, and what it is along each axis of the crash part.

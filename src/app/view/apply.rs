@@ -78,7 +78,11 @@ impl ViewState {
         }
     }
 
-    fn set_display(&mut self, display: Display) {
+    fn set_display(&mut self, mut display: Display) {
+        if display.mapped != self.display.mapped {
+            // Limits of differences are those of one quantity.
+            display.limits.retain(|by, _| !by.speaks_of_quantity());
+        }
         let before = self.display.color_by;
         if display.color_by.is_match_map() && !before.is_match_map() {
             self.colors_before_map = before;

@@ -1,8 +1,11 @@
 //! Plain choices about what is shown.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 use crate::app::{Coloring, MapDisplay, MapPicture};
+use crate::colormap::ColorScale;
 use crate::pipeline::forming_values::FormingValue;
 use crate::role::PerRole;
 
@@ -18,7 +21,7 @@ pub enum ShownGeometry {
 }
 
 /// What the colours say.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ColorBy {
     /// Which of the two parts.
@@ -309,8 +312,10 @@ pub struct Display {
     pub has_unused: bool,
     /// What the colours say.
     pub color_by: ColorBy,
-    /// Maps, limits, tolerance.
+    /// Maps, limits of the deviation, tolerance.
     pub coloring: Coloring,
+    /// Values at the ends of the colours of other maps; one without an entry follows its values.
+    pub limits: BTreeMap<ColorBy, [f64; 2]>,
     /// Of what the pictures of a mapping speak.
     pub mapped: MapDisplay,
     /// The small axes in the corner.
@@ -336,9 +341,24 @@ impl Default for Display {
             has_unused: false,
             color_by: ColorBy::default(),
             coloring: Coloring::default(),
+            limits: BTreeMap::new(),
             mapped: MapDisplay::default(),
             has_axes: true,
             has_scale_bar: true,
+        }
+    }
+}
+
+impl Display {
+    /// The colours of a map that is not that of the deviation, with its limits where they were set.
+    pub fn limited(&self, by: ColorBy, scale: ColorScale) -> ColorScale {
+        let limits = self.limits.get(&by);
+        let [min, max] = limits.copied().unwrap_or([scale.min, scale.max]);
+        ColorScale {
+            min,
+            max,
+            hides_beyond: self.coloring.hides_beyond,
+            ..scale
         }
     }
 }

@@ -52,6 +52,7 @@ const HOVERED: u32 = 256u;
 const FIRST_SHEET: u32 = 512u;
 const SECOND_SHEET: u32 = 1024u;
 const BARE: u32 = 2048u;
+const HIDES_BEYOND: u32 = 4096u;
 
 // Bits of a part's look in the parts table.
 const PART_VISIBLE: u32 = 1u;

@@ -12,6 +12,8 @@ struct Varyings {
 // Larger field values mean that there is none.
 const NO_VALUE: f32 = 1e37;
 const FIELD_STEPS: f32 = 1024.0;
+// Values are beyond the ends of the table from here on, as a share of it: the ends themselves are not.
+const BEYOND: f32 = 1e-5;
 
 fn octahedral(e: vec2<f32>) -> vec3<f32> {
     var n = vec3<f32>(e, 1.0 - abs(e.x) - abs(e.y));
@@ -185,10 +187,21 @@ fn shaded(in: Varyings, front: bool) -> vec3<f32> {
     return srgb_from_linear(color);
 }
 
+// True if this fragment is not to be seen: its value lies beyond the limits, or it was removed.
+fn hidden(in: Varyings) -> bool {
+    if has(HIDES_BEYOND) && in.field.y > 0.5 {
+        let t = (in.field.x / in.field.y - drawable.params.x) * drawable.params.y;
+        if abs(t - 0.5) > 0.5 + BEYOND {
+            return true;
+        }
+    }
+    return removed(in.view, in.clip.xy);
+}
+
 @fragment
 fn fs_opaque(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let color = shaded(in, front);
-    if removed(in.view, in.clip.xy) {
+    if hidden(in) {
         discard;
     }
     return vec4<f32>(color, 1.0);
@@ -198,7 +211,7 @@ fn fs_opaque(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) v
 @fragment
 fn fs_clear(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let color = shaded(in, front);
-    if removed(in.view, in.clip.xy) {
+    if hidden(in) {
         discard;
     }
     let facing = abs(dot(normalize(in.normal), to_eye(in.view)));
@@ -211,7 +224,7 @@ fn fs_clear(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) ve
 @fragment
 fn fs_selected(in: Varyings) -> @location(0) vec4<f32> {
     let selected = has(SELECTED) || (in.ids.x & PART_SELECTED) != 0u;
-    if !selected || removed(in.view, in.clip.xy) {
+    if !selected || hidden(in) {
         discard;
     }
     return vec4<f32>(1.0);
@@ -220,7 +233,7 @@ fn fs_selected(in: Varyings) -> @location(0) vec4<f32> {
 // Depth of a sheet, for the other one; never 0, which stands for nothing.
 @fragment
 fn fs_depth(in: Varyings) -> @location(0) u32 {
-    if removed(in.view, in.clip.xy) {
+    if hidden(in) {
         discard;
     }
     return bitcast<u32>(select(in.view.z, 1e-30, in.view.z == 0.0));
@@ -229,7 +242,7 @@ fn fs_depth(in: Varyings) -> @location(0) u32 {
 // Drawable and triangle, counted from one.
 @fragment
 fn fs_pick(in: Varyings) -> @location(0) vec2<u32> {
-    if removed(in.view, in.clip.xy) {
+    if hidden(in) {
         discard;
     }
     return vec2<u32>(drawable.flags.y, in.ids.y + 1u);

@@ -2,7 +2,7 @@
 
 use egui::{Button, ComboBox, ProgressBar, RichText, Ui, vec2};
 
-use super::section::section_ui;
+use super::section::{is_unfolded, section_ui};
 use super::{manual_move, pairs, recipe, result};
 use crate::app::{
     Action, AppState, Command, MatchCommand, RunningJob, Section, ShownGeometry, ViewCommand,
@@ -24,7 +24,7 @@ const LABEL: f32 = 56.0;
 
 /// Draws section 3.
 pub fn matching_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let summary = summary(state);
+    let summary = summary(state, is_unfolded(ui, Section::Match));
     section_ui(
         ui,
         state,
@@ -51,11 +51,13 @@ pub fn matching_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     );
 }
 
-fn summary(state: &AppState) -> String {
+fn summary(state: &AppState, is_unfolded: bool) -> String {
     if state.jobs.is_active(JobKey::Match) {
         return "running".to_owned();
     }
     match state.document.current_result() {
+        // The card below says it.
+        Some(_) if is_unfolded => String::new(),
         Some(result) => {
             let verdict = result.verdict().label();
             // An alternative is measured once it is shown.

@@ -203,13 +203,13 @@ fn with_result(ui: &Ui, chip: Response, state: &AppState, level: Option<usize>) 
     };
     let at = chip.rect.right_top() + vec2(-4.0, 4.0);
     ui.painter().circle_filled(at, 2.0, Palette::of(ui).good);
-    chip.on_hover_text(format!("Match: {}", result_text(state, result)))
+    chip.on_hover_text(format!("Match: {}", result_text(state, result, true)))
 }
 
 /// "RMS 0.439 mm · 741 ms · 0.02 mm from full".
-fn result_text(state: &AppState, result: &LevelResult) -> String {
+fn result_text(state: &AppState, result: &LevelResult, has_rms: bool) -> String {
     let mut parts = Vec::new();
-    if let Some(rmse) = result.rmse {
+    if let Some(rmse) = result.rmse.filter(|_| has_rms) {
         parts.push(format!("RMS {}", state.lengths().of(rmse)));
     }
     parts.push(duration_text(result.took));
@@ -225,7 +225,12 @@ fn result_text(state: &AppState, result: &LevelResult) -> String {
 fn result_ui(ui: &mut Ui, state: &AppState, level: Option<usize>) {
     if let Some(result) = state.level_result(level) {
         let of = level.map_or_else(|| "full".to_owned(), short_count);
-        let text = format!("match at {of}: {}", result_text(state, result));
+        // The card of the result says its own.
+        let is_told = state.document.current_result().is_some_and(|told| {
+            let pose = &told.run.crash_from_stamped;
+            told.alternative.is_none() && *pose == result.crash_from_stamped
+        });
+        let text = format!("match at {of}: {}", result_text(state, result, !is_told));
         let color = Palette::of(ui).secondary;
         let text = egui::RichText::new(text).small().color(color);
         ui.add(egui::Label::new(text).truncate());

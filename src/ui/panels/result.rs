@@ -10,7 +10,7 @@ use crate::assess::{Ambiguity, Coverage, OneSided, Reason};
 use crate::jobs::Stamp;
 use crate::registration::{group_starts, limits};
 use crate::report::distances::{OVERLAP_HELP, OVERLAP_SPREAD};
-use crate::report::{DIRECTION, PoseRecord, few_agree_words, number, start_counts};
+use crate::report::{DIRECTION, PoseRecord, few_agree_words, number, start_kinds};
 use crate::role::{PerRole, Role};
 use crate::settings::setting;
 use crate::text::{capital, fixed, sentence, vector, whole_percent};
@@ -180,7 +180,12 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
     let is_unit_in_doubt = state.is_unit_in_doubt();
     let n_told = if is_unit_in_doubt { 1 } else { 3 };
     for reason in assessment.reasons.iter().take(n_told) {
-        paragraph(ui, sentence(&reason.words(lengths)));
+        let words = if is_unit_in_doubt {
+            reason.words(lengths)
+        } else {
+            reason.words_beside_figures(lengths)
+        };
+        paragraph(ui, sentence(&words));
     }
     if is_unit_in_doubt {
         return;
@@ -318,7 +323,7 @@ fn figures_ui(ui: &mut Ui, state: &AppState, result: &MatchResult) {
             "Converged starts",
             &format!("{n_same} of {}", outcome.starts.len()),
         );
-        caption(ui, capital(&start_counts(&outcome.starts)));
+        caption(ui, capital(&start_kinds(&outcome.starts)));
         if let Some(words) = few_agree_words(&outcome.starts, n_same) {
             caption(ui, capital(&words));
         }
@@ -424,45 +429,70 @@ fn matrix_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         });
 }
 
-/// Every digit. The shift has lines of its own, so that it is seen at once; a rotation wider than the column scrolls
-/// sideways rather than being rounded.
+/// Air between columns of digits.
+const BETWEEN: f32 = 12.0;
+/// Size of digits.
+const DIGITS: f32 = 10.5;
+
+/// Every digit. The rotation stands as a matrix where the column is wide enough for its digits, else below each other,
+/// row after row; the shift has lines of its own, so that it is seen at once.
 fn grid_ui(ui: &mut Ui, rows: &[[f64; 4]; 4]) {
     let lines = &rows[..3];
-    ui.scope(|ui| {
-        // The bar has a strip of its own, so that no digits lie under it.
-        ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
-        egui::ScrollArea::horizontal()
-            .id_salt("matrix digits")
-            .show(ui, |ui| {
-                digits_grid(ui, "rotation grid", |ui| {
-                    for row in lines {
-                        for value in &row[..3] {
-                            digits(ui, *value);
-                        }
-                        ui.end_row();
-                    }
-                });
-            });
+    let rotation = aligned(lines.iter().flat_map(|row| &row[..3]));
+    let shift = aligned(lines.iter().map(|row| &row[3]));
+    let width = |text: &String| {
+        let font = egui::FontId::monospace(DIGITS);
+        let color = egui::Color32::PLACEHOLDER;
+        let laid = ui.painter().layout_no_wrap(text.clone(), font, color);
+        laid.size().x
+    };
+    let widest = rotation.iter().map(width).fold(0.0, f32::max);
+    let fits = 3.0 * widest + 2.0 * BETWEEN <= ui.available_width();
+    digits_grid(ui, "rotation grid", |ui| {
+        for (i, text) in rotation.into_iter().enumerate() {
+            let (row, column) = (i / 3 + 1, i % 3 + 1);
+            if !fits {
+                caption(ui, format!("R{row}{column}"));
+            }
+            digits(ui, text);
+            if !fits || column == 3 {
+                ui.end_row();
+            }
+            if !fits && column == 3 {
+                // Air between the rows of the matrix.
+                ui.allocate_space(vec2(1.0, 2.0));
+                ui.end_row();
+            }
+        }
     });
     digits_grid(ui, "translation grid", |ui| {
-        for (axis, row) in Axis::ALL.into_iter().zip(lines) {
+        for (axis, text) in Axis::ALL.into_iter().zip(shift) {
             caption(ui, format!("t {}", axis.letter()));
-            digits(ui, row[3]);
+            digits(ui, text);
             ui.end_row();
         }
     });
 }
 
+/// Numbers with their decimal points below each other.
+fn aligned<'a>(values: impl Iterator<Item = &'a f64>) -> Vec<String> {
+    let texts: Vec<String> = values.map(|&value| number(value)).collect();
+    let whole = |text: &str| text.find(['.', 'e']).unwrap_or(text.len());
+    let most = texts.iter().map(|text| whole(text)).max().unwrap_or(0);
+    let pad = |text: &String| " ".repeat(most - whole(text)) + text;
+    texts.iter().map(pad).collect()
+}
+
 fn digits_grid(ui: &mut Ui, name: &str, rows: impl FnOnce(&mut Ui)) {
     egui::Grid::new(name)
-        .spacing(vec2(12.0, 2.0))
+        .spacing(vec2(BETWEEN, 2.0))
         .min_row_height(0.0)
         .show(ui, rows);
 }
 
-fn digits(ui: &mut Ui, value: f64) {
-    let text = RichText::new(format!("{:>20}", number(value)));
-    ui.add(egui::Label::new(text.monospace().size(10.5)).selectable(true));
+fn digits(ui: &mut Ui, text: String) {
+    let text = RichText::new(text).monospace().size(DIGITS);
+    ui.add(egui::Label::new(text).selectable(true).extend());
 }
 
 /// What people expect of a translation: how far the part's centre goes, and how much it turns.
@@ -505,6 +535,17 @@ fn moved_ui(ui: &mut Ui, state: &AppState) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn digits_are_whole_and_their_points_stand_below_each_other() {
+        let values = [0.999_999_999_999_999_9, -1.25, 1234.5, -2.5e-17, 1.0];
+        let texts = aligned(values.iter());
+        let points: Vec<_> = texts.iter().map(|text| text.find('.')).collect();
+        assert!(points.iter().all(|point| *point == Some(4)), "{texts:?}");
+        for (text, value) in texts.iter().zip(values) {
+            assert_eq!(text.trim().parse(), Ok(value));
+        }
+    }
 
     #[test]
     fn an_equal_alternative_is_not_called_worse() {

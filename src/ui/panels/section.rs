@@ -166,6 +166,11 @@ pub fn fold_ui(ui: &Ui, state: &AppState, height: f32) {
     }
 }
 
+/// True if a section shows its body.
+pub fn is_unfolded(ui: &Ui, section: Section) -> bool {
+    Fold::read(ui).shown[section.index()]
+}
+
 /// Draws the header; true if it was clicked.
 fn header_ui(
     ui: &mut Ui,

@@ -3,16 +3,21 @@
 
 mod choices;
 
+use std::sync::Arc;
+
 use egui::{
-    Align, Align2, Button, Color32, FontId, Id, Layout, Rect, RichText, Sense, Ui, Vec2,
+    Align, Align2, Button, Color32, FontId, Id, Layout, Rect, RichText, Sense, Stroke, Ui, Vec2,
     WidgetInfo, vec2,
 };
-use egui_plot::{LineStyle, Plot, PlotBounds, PlotPoints, PlotUi, Points};
+use egui_plot::{
+    LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, PlotTransform, PlotUi, Points,
+};
 
 use self::choices::{Choices, Zoom};
 use super::coordinates::with_coordinates;
 use super::outlines::{Lie, Outline, around, direction_name};
 use super::sections::{self, Cuts, Gaps};
+use super::unused::Lines;
 use crate::app::{Action, AppState, Command, InspectCommand, SectionView};
 use crate::geometry::{Gap, Plane, Point3, SectionLine, Vector3, gap_to_nearest, nearest_on_lines};
 use crate::role::Role;
@@ -50,6 +55,8 @@ pub(super) struct Drawing<'a> {
     pub look: &'a Look,
     pub plane: Plane,
     pub cuts: &'a Cuts,
+    /// Those of unused parts, which are only seen.
+    pub unused: &'a [(Role, Arc<Lines>)],
     /// From the crash outline to the stamped one, once they are worked out.
     pub gaps: Option<&'a Gaps>,
     /// Outlines are still to come.
@@ -155,6 +162,9 @@ impl Drawing<'_> {
             let name = file.loaded.file_name();
             swatch.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &name));
             swatch.on_hover_text(name);
+        }
+        if self.unused.iter().any(|(_, lines)| !lines.is_empty()) {
+            ui.label(RichText::new("— unused").size(12.0).color(self.look.weak));
         }
         ui.spacing_mut().item_spacing.x = 6.0;
     }
@@ -295,6 +305,7 @@ impl Drawing<'_> {
             self.measured(plot, &choices.picked);
             self.look_at(plot, &mut seen);
         });
+        self.unused_lines(ui, &shown.transform);
         let response = shown.response;
         let axes = self.plane.axes().map(|axis| direction_name(&axis));
         self.axis_names(ui, response.rect, &axes);
@@ -419,6 +430,25 @@ impl Drawing<'_> {
             } else {
                 line
             });
+        }
+    }
+
+    /// The outlines of unused parts, thin and grey. They are no part of the plot, whose view is that of the others.
+    fn unused_lines(&self, ui: &Ui, plot: &PlotTransform) {
+        let painter = ui.painter_at(*plot.frame());
+        let seen = plot.frame().expand(1.0);
+        for (role, lines) in self.unused {
+            let stroke = Stroke::new(1.0, color(self.look.ghost(*role)));
+            for line in lines.iter() {
+                let places = line.iter().map(|point| {
+                    let [x, y] = self.plane.flat(point);
+                    plot.position_from_point(&PlotPoint::new(x, y))
+                });
+                let places: Vec<_> = places.collect();
+                if seen.intersects(Rect::from_points(&places)) {
+                    painter.line(places, stroke);
+                }
+            }
         }
     }
 

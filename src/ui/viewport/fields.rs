@@ -1,6 +1,7 @@
 //! Numbers shown as colours: thickness, forming results and error of the reduction, made off the frame and
 //! kept while they are shown; distance between the parts and overlap, which the worker measures.
 
+mod elements;
 mod summary;
 
 use std::sync::Arc;
@@ -8,7 +9,7 @@ use std::sync::Arc;
 use super::map_fields;
 use super::meshes::{MeshKey, ShownMesh};
 use super::visible_parts::PartInstance;
-use crate::app::{AppState, ColorBy, MapPicture};
+use crate::app::{AppState, ColorBy, Coloring, MapPicture};
 use crate::assess::Assessment;
 use crate::colormap::{ColorMap, ColorScale};
 use crate::geometry::{Point3, Similarity, TriMesh};
@@ -19,6 +20,7 @@ use crate::render::FieldLook;
 use crate::role::{PerRole, Role};
 use crate::search::{Bvh, closest_many};
 use crate::ui::background::{Background, Task};
+use elements::{at_corners, thickness, vertex_means};
 pub(super) use summary::Summary;
 use summary::{robust_range, without_rounding};
 
@@ -56,6 +58,12 @@ impl FieldKind {
     /// True for distances with a side.
     pub fn is_signed(self) -> bool {
         self == Self::Deviation
+    }
+
+    /// True for what the colours of values with a sign are put on, besides the deviation.
+    pub fn has_signed_colors(self) -> bool {
+        use MapPicture::{Angle, Confidence, File, Status};
+        matches!(self, Self::Map(picture) if !matches!(picture, Angle | Confidence | File | Status))
     }
 
     /// True for differences of a quantity, which may all be rounding.
@@ -198,21 +206,28 @@ impl FieldStore {
 
     /// The scale of what a window shows; the same in both if they show the same.
     pub fn scale(&self, window: Role, state: &AppState) -> Option<ColorScale> {
-        let kind = FieldKind::of(state.color_by(window))?;
-        let coloring = &state.view.display.coloring;
-        match kind {
-            FieldKind::Deviation => return Some(coloring.deviation_scale(state.comparison()?)),
-            FieldKind::Overlap => return Some(ColorScale::new(ColorMap::Classes, 0.0, 1.0)),
-            FieldKind::Map(MapPicture::Status) => return Some(ColorScale::statuses()),
-            FieldKind::Map(MapPicture::File) => return Some(ColorScale::files()),
-            FieldKind::Map(MapPicture::Confidence) => {
-                return Some(coloring.on_scale(ColorScale::new(ColorMap::Viridis, 0.0, 1.0)));
-            }
+        let by = state.color_by(window);
+        let kind = FieldKind::of(by)?;
+        let display = &state.view.display;
+        Some(match kind {
+            FieldKind::Deviation => display.coloring.deviation_scale(state.comparison()?),
+            FieldKind::Overlap => ColorScale::new(ColorMap::Classes, 0.0, 1.0),
+            FieldKind::Map(MapPicture::Status) => ColorScale::statuses(),
+            FieldKind::Map(MapPicture::File) => ColorScale::files(),
             FieldKind::Thickness
             | FieldKind::ReductionError
             | FieldKind::Uncertainty
             | FieldKind::Forming(_)
-            | FieldKind::Map(_) => {}
+            | FieldKind::Map(_) => {
+                display.limited(by, self.scale_of_values(kind, &display.coloring)?)
+            }
+        })
+    }
+
+    /// The scale of a map as its values give it.
+    fn scale_of_values(&self, kind: FieldKind, coloring: &Coloring) -> Option<ColorScale> {
+        if kind == FieldKind::Map(MapPicture::Confidence) {
+            return Some(coloring.on_scale(ColorScale::new(ColorMap::Viridis, 0.0, 1.0)));
         }
         let ranges = self.ranges.iter().filter_map(|(_, range)| *range);
         let [low, high] = common_range(ranges.filter(|(of, _)| *of == kind).map(|(_, r)| r))?;
@@ -221,7 +236,7 @@ impl FieldStore {
             let scale = ColorScale::new(ColorMap::Viridis, 0.0, high.max(0.1));
             return Some(coloring.on_scale(scale));
         }
-        if let FieldKind::Map(_) = kind {
+        if kind.has_signed_colors() {
             return Some(coloring.on_signed_scale(low.abs().max(high.abs())));
         }
         let low = match kind {
@@ -431,23 +446,24 @@ impl Order {
     }
 
     fn make(self) -> Field {
-        let values = match &self.other {
-            Some(other) => {
-                let points = self.mesh.mesh().positions();
-                let full = &self.mesh.source.part.surface;
-                if Arc::ptr_eq(other, full.mesh()) {
-                    distances(full.bvh(), points)
-                } else {
-                    distances(&Bvh::build(Arc::clone(other)), points)
-                }
-            }
-            None => self.results(),
-        };
         let is_by_corner = matches!(self.key.kind, FieldKind::Map(_));
-        let summary = {
-            let element = |triangle: usize| self.mesh.source.element(triangle);
-            let element: Option<&dyn Fn(usize) -> u32> = is_by_corner.then_some(&element);
-            Summary::of(self.mesh.mesh(), &values, element)
+        let (values, summary) = match self.at_nodes() {
+            Some(values) => {
+                let summary = Summary::of_nodes(self.mesh.mesh(), &values);
+                (values, summary)
+            }
+            // The figures are those of the elements whatever is drawn of them, as in the report.
+            None => {
+                let by_element = self.by_element();
+                let part = &self.mesh.source.part;
+                let summary = Summary::of_elements(&part.mesh, part.ids.elements(), &by_element);
+                let values = if is_by_corner {
+                    at_corners(&self.mesh, &by_element)
+                } else {
+                    vertex_means(&self.mesh, &by_element)
+                };
+                (values, summary)
+            }
         };
         Field {
             range: robust_range(&values),
@@ -459,40 +475,65 @@ impl Order {
         }
     }
 
-    fn results(&self) -> Vec<f32> {
+    /// What is known at the nodes of the drawn mesh; `None` for what the elements have.
+    fn at_nodes(&self) -> Option<Vec<f32>> {
+        let points = self.mesh.mesh().positions();
         if let Some((assessment, pose)) = &self.stated {
-            return uncertainties(assessment, self.mesh.mesh().positions(), pose);
+            return Some(uncertainties(assessment, points, pose));
         }
+        let other = self.other.as_ref()?;
+        let full = &self.mesh.source.part.surface;
+        Some(if Arc::ptr_eq(other, full.mesh()) {
+            distances(full.bvh(), points)
+        } else {
+            distances(&Bvh::build(Arc::clone(other)), points)
+        })
+    }
+
+    /// The value of each element of the deck; NaN where there is none.
+    fn by_element(&self) -> Vec<f64> {
         let Some(shown) = &self.key.shown else {
             return Vec::new();
         };
-        let mut values = self.results_of(shown);
+        let mut values = self.results(shown);
         // Other pictures of the mapping show no quantity.
         let is_of_quantity = match self.key.kind {
             FieldKind::Map(picture) => picture.color_by().speaks_of_quantity(),
             _ => true,
         };
-        let factor = shown.value.map_or(1.0, FormingValue::shown_factor) as f32;
+        let factor = shown.value.map_or(1.0, FormingValue::shown_factor);
         if is_of_quantity && factor != 1.0 {
             values.iter_mut().for_each(|value| *value *= factor);
         }
         values
     }
 
-    fn results_of(&self, shown: &ShownValue) -> Vec<f32> {
+    fn results(&self, shown: &ShownValue) -> Vec<f64> {
+        let part = &self.mesh.source.part;
+        let n_elements = part.model.shells.len();
         match (&self.mapped, self.key.kind) {
             (Some(run), FieldKind::Map(picture)) => {
                 let results = (run.as_ref(), self.compared.as_deref());
-                let values = map_fields::at_corners(&self.mesh, results, picture, shown);
+                let values = map_fields::by_element(n_elements, results, picture, shown);
                 if !self.key.kind.is_difference() {
                     return values;
                 }
                 let sizes = (0..run.shells.len()).map(|element| run.shown(element, shown).abs());
                 without_rounding(values, sizes)
             }
-            (Some(run), _) => mapped(&self.mesh, run, |e| run.shown(e, shown)),
-            (None, FieldKind::Forming(value)) => forming(&self.mesh, value, shown),
-            (None, _) => thickness(&self.mesh),
+            (Some(run), _) => {
+                let mut values = vec![f64::NAN; n_elements];
+                for (element, &shell) in run.shells.iter().enumerate() {
+                    if let Some(slot) = values.get_mut(shell as usize) {
+                        *slot = run.shown(element, shown);
+                    }
+                }
+                values
+            }
+            (None, FieldKind::Forming(value)) => {
+                forming_values(part, value, shown.flat, shown.layer).unwrap_or_default()
+            }
+            (None, _) => thickness(part),
         }
     }
 }
@@ -513,70 +554,6 @@ fn distances(tree: &Bvh, points: &[Point3]) -> Vec<f32> {
         hit.map_or(f32::NAN, |hit| hit.distance_sq.sqrt() as f32)
     };
     found.map(distance).collect()
-}
-
-/// Thickness in the crash model's unit; NaN where none is known.
-fn thickness(shown: &ShownMesh) -> Vec<f32> {
-    let part = &shown.source.part;
-    let factor = part.settings.length_factor;
-    let of_shell = |shell: u32| {
-        let corners = part.model.shell_thickness(shell)?;
-        Some(corners.iter().sum::<f64>() / 4.0 * factor)
-    };
-    let means = vertex_means(shown, of_shell).into_iter();
-    means.map(known).collect()
-}
-
-/// A forming result; NaN where there is none.
-fn forming(shown: &ShownMesh, value: FormingValue, of: &ShownValue) -> Vec<f32> {
-    let values = forming_values(&shown.source.part, value, of.flat, of.layer).unwrap_or_default();
-    let of_shell = |shell: u32| values.get(shell as usize).copied();
-    vertex_means(shown, |shell| {
-        of_shell(shell).filter(|value| value.is_finite())
-    })
-}
-
-/// A mapped quantity of the crash part; NaN where it has none.
-fn mapped(shown: &ShownMesh, run: &MapRun, value: impl Fn(usize) -> f64) -> Vec<f32> {
-    let mut values = vec![f64::NAN; shown.source.part.model.shells.len()];
-    for (element, &shell) in run.shells.iter().enumerate() {
-        if let Some(slot) = values.get_mut(shell as usize) {
-            *slot = value(element);
-        }
-    }
-    let of_shell = |shell: u32| values.get(shell as usize).copied();
-    vertex_means(shown, |shell| {
-        of_shell(shell).filter(|value| value.is_finite())
-    })
-}
-
-/// Mean over the shells around each vertex, by area; NaN where none has a value.
-fn vertex_means(shown: &ShownMesh, of_shell: impl Fn(u32) -> Option<f64>) -> Vec<f32> {
-    let n_shells = shown.source.part.model.shells.len();
-    let mesh = shown.mesh();
-    let mut sums = vec![[0.0_f64; 2]; mesh.n_vertices()];
-    for (triangle, corners) in mesh.triangles().iter().enumerate() {
-        let element = shown.source.element(triangle);
-        if (element as usize) >= n_shells {
-            continue;
-        }
-        let Some(value) = of_shell(element) else {
-            continue;
-        };
-        let area = mesh.triangle_area(triangle);
-        for &vertex in corners {
-            let [sum, weight] = &mut sums[vertex as usize];
-            *sum += area * value;
-            *weight += area;
-        }
-    }
-    let means = sums.into_iter();
-    means.map(|[sum, weight]| (sum / weight) as f32).collect()
-}
-
-/// A thickness of zero is one that was not given.
-fn known(value: f32) -> f32 {
-    if value > 0.0 { value } else { f32::NAN }
 }
 
 #[cfg(test)]

@@ -1,30 +1,24 @@
 //! Numbers of a mapping as colours of the crash part, one for each element: difference, distance,
 //! angle, confidence, status.
 
-use super::meshes::ShownMesh;
 use crate::app::MapPicture;
 use crate::colormap::ColorScale;
 use crate::pipeline::map::{MapRun, OtherResult, ShownValue};
 
-/// The numbers of a picture at the corners of a mesh, three for each triangle; NaN where there is none.
-pub(super) fn at_corners(
-    shown: &ShownMesh,
+/// The number of a picture for each of so many elements of the deck; NaN where there is none.
+pub(super) fn by_element(
+    n_elements: usize,
     (run, other): (&MapRun, Option<&OtherResult>),
     picture: MapPicture,
     value: &ShownValue,
-) -> Vec<f32> {
-    let mut by_shell = vec![f32::NAN; shown.source.part.model.shells.len()];
+) -> Vec<f64> {
+    let mut numbers = vec![f64::NAN; n_elements];
     for (element, &shell) in run.shells.iter().enumerate() {
-        if let Some(slot) = by_shell.get_mut(shell as usize) {
-            *slot = number((run, other), element, picture, value) as f32;
+        if let Some(slot) = numbers.get_mut(shell as usize) {
+            *slot = number((run, other), element, picture, value);
         }
     }
-    let triangles = 0..shown.mesh().n_triangles();
-    let numbers = triangles.map(|triangle| {
-        let shell = shown.source.element(triangle) as usize;
-        by_shell.get(shell).copied().unwrap_or(f32::NAN)
-    });
-    numbers.flat_map(|number| [number; 3]).collect()
+    numbers
 }
 
 fn number(

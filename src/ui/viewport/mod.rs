@@ -150,6 +150,7 @@ impl Viewports {
             look: &Look::of(ui.visuals().dark_mode),
             plane,
             cuts: &self.sections.cuts(Role::Crash, state),
+            unused: &self.unused.flat(),
             gaps: gaps.as_deref(),
             is_cutting: self.sections.is_cutting(&plane) || self.meshes.is_waiting(),
         };
@@ -255,6 +256,7 @@ impl Viewports {
     fn picture_of(&mut self, ui: &Ui, view: &ViewFrame, state: &AppState, look: &Look) -> Picture {
         let shown = visible_parts::visible_parts(state, view);
         let unused = self.unused.drawables((state, view), look, &shown, ui.ctx());
+        let unused_outlines = self.unused.outlines(view.window, look, &shown);
         let instances: Vec<_> = shown
             .into_iter()
             .filter_map(|instance| Some((instance.source(state)?, instance)))
@@ -303,7 +305,7 @@ impl Viewports {
         let layers = layers.collect();
         let mut picture = Picture::new(state, view, look, layers, density(ui.ctx()));
         picture.cut(state, look, &cuts);
-        picture.add(unused);
+        picture.add(unused, unused_outlines);
         picture
     }
 

@@ -74,16 +74,16 @@ fn measure(frame: &FrameContext<'_>, commands: &mut Vec<Command>) -> Option<Pick
     end.ok()
 }
 
-/// The node next to the pointer, or else the point of the sheet below it; why none can be taken there.
+/// The centre of the hole or the node next to the pointer, or else the point of the sheet below it; why none can be
+/// taken there.
 fn distance_end(frame: &FrameContext<'_>) -> Option<Result<Pick, &'static str>> {
     let pos = frame.response.hover_pos()?;
     let (rect, camera) = (frame.rect(), &frame.view.camera);
-    let hit = frame
-        .picture
-        .hit(camera, frame.pixel(pos), frame.screen())?;
+    let hit = frame.picture.hit(camera, frame.pixel(pos), frame.screen());
+    let hole = hole_center(frame, pos, hit.as_ref());
     let is_first_here = |(role, _): &(Role, Point3)| frame.picture.place_of(*role).is_some();
     let ends = frame.state.distance_ends();
-    if hit.further.is_some() {
+    if hole.is_none() && hit.as_ref()?.further.is_some() {
         return Some(Err(
             "Distances are measured on the crash part and the first stamped part",
         ));
@@ -98,12 +98,32 @@ fn distance_end(frame: &FrameContext<'_>) -> Option<Result<Pick, &'static str>> 
             "The first point lies in the other window: Move over shows both parts in one",
         ));
     }
-    let role = hit.role;
-    let place = frame.picture.place_of(role)?;
-    let Candidate { at, point, kind } = snapped(rect, camera, pos, &hit)?;
-    let point = place.to_part(&point);
+    let (role, Candidate { at, point, kind }) = match hole {
+        Some(hole) => hole,
+        None => {
+            let hit = hit.as_ref()?;
+            (hit.role, snapped(rect, camera, pos, hit)?)
+        }
+    };
+    let point = frame.picture.place_of(role)?.to_part(&point);
     let picked = PickedPoint { point, kind };
     Some(Ok(Pick { role, picked, at }))
+}
+
+/// The nearest centre of a hole within reach in the parts that are shown.
+fn hole_center(
+    frame: &FrameContext<'_>,
+    pos: Pos2,
+    hit: Option<&Hit>,
+) -> Option<(Role, Candidate)> {
+    let picker = PointPicker(frame);
+    let near = Role::ALL.into_iter().filter_map(|role| {
+        let holes = picker.holes(role)?;
+        let holes = holes.filter(|hole| !frame.picture.is_cut_away(&hole.point));
+        Some((role, picker.nearest(holes, pos, hit)?))
+    });
+    let nearest = near.min_by(|(_, a), (_, b)| a.off.total_cmp(&b.off));
+    nearest.map(|(role, near)| (role, near.candidate))
 }
 
 /// Picking in one frame.
@@ -161,43 +181,66 @@ impl PointPicker<'_> {
 
     /// The nearest hole or corner within reach that no sheet of the part hides.
     fn landmark(&self, role: Role, pos: Pos2, hit: Option<&Hit>) -> Option<Candidate> {
+        let landmarks = self.holes(role)?.chain(self.corners(role)?);
+        self.nearest(landmarks, pos, hit).map(|near| near.candidate)
+    }
+
+    /// The round holes of a part that this window shows.
+    fn holes(&self, role: Role) -> Option<impl Iterator<Item = Landmark>> {
         let place = self.0.picture.place_of(role)?;
-        let landmarks = &self.0.state.document.part(role)?.facts.landmarks;
-        let rect = self.0.rect();
-        let size = |point: &Point3| self.0.view.camera.pixel_size(screen_of(rect), point);
-        let holes = landmarks.holes.iter().map(|hole| {
+        let holes = &self.0.state.document.part(role)?.facts.landmarks.holes;
+        Some(holes.iter().map(move |hole| {
             let center = place.to_window(&hole.center);
-            let radius = (hole.radius / size(&center)) as f32;
-            let reach = HOLE_REACH.max(0.9 * radius);
+            let radius = (hole.radius / self.size_at(&center)) as f32;
             Landmark {
                 point: center,
-                reach,
+                reach: HOLE_REACH.max(0.9 * radius),
                 depth: hole.radius,
                 kind: PickKind::HoleCenter,
             }
-        });
-        let corners = landmarks.corners.iter().map(|corner| Landmark {
+        }))
+    }
+
+    /// The corners of its rim.
+    fn corners(&self, role: Role) -> Option<impl Iterator<Item = Landmark>> {
+        let place = self.0.picture.place_of(role)?;
+        let corners = &self.0.state.document.part(role)?.facts.landmarks.corners;
+        Some(corners.iter().map(move |corner| Landmark {
             point: place.to_window(corner),
             reach: REACH,
             depth: 0.0,
             kind: PickKind::Corner,
-        });
-        let within = holes.chain(corners).filter_map(|landmark| {
+        }))
+    }
+
+    /// Length of a pixel at a point.
+    fn size_at(&self, point: &Point3) -> f64 {
+        let screen = screen_of(self.0.rect());
+        self.0.view.camera.pixel_size(screen, point)
+    }
+
+    /// The nearest of these within reach that is not behind what the pointer meets.
+    fn nearest(
+        &self,
+        landmarks: impl Iterator<Item = Landmark>,
+        pos: Pos2,
+        hit: Option<&Hit>,
+    ) -> Option<Near> {
+        let within = landmarks.filter_map(|landmark| {
             let Landmark {
                 point,
                 reach,
                 depth,
                 kind,
             } = landmark;
-            let at = pos_of(rect, &self.0.view.camera, &point)?;
+            let at = pos_of(self.0.rect(), &self.0.view.camera, &point)?;
             let off = at.distance(pos) / reach;
-            let slack = depth + f64::from(2.0 * reach) * size(&point);
+            let slack = depth + f64::from(2.0 * reach) * self.size_at(&point);
             let is_seen = hit.is_none_or(|hit| !self.is_behind(&point, &hit.point, slack));
             let candidate = Candidate { at, point, kind };
             (off < 1.0 && is_seen).then_some(Near { off, candidate })
         });
-        let nearest = within.min_by(|a, b| a.off.total_cmp(&b.off));
-        nearest.map(|near| near.candidate)
+        within.min_by(|a, b| a.off.total_cmp(&b.off))
     }
 
     /// True if a point lies farther from the viewer than another by more than `slack`.

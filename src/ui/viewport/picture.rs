@@ -10,7 +10,7 @@ use crate::app::{AppState, ColorBy, PartRef, ShownFile};
 use crate::colormap::{ColorScale, Rgb};
 use crate::geometry::camera::{ScreenSize, ViewRay};
 use crate::geometry::{Aabb, Camera, Plane, Point3, Similarity, Vector3};
-use crate::render::{Drawable, FieldLook, PartLook, Scene, Section, Sheet};
+use crate::render::{Drawable, FieldLook, PartLook, Polyline, Scene, Section, Sheet};
 use crate::role::Role;
 use crate::ui::theme::Look;
 
@@ -168,9 +168,12 @@ impl Picture {
     }
 
     /// Adds what is only seen: nothing is found at its places.
-    pub fn add(&mut self, unused: Vec<Drawable>) {
+    pub fn add(&mut self, unused: Vec<Drawable>, outlines: Vec<Polyline>) {
         if !unused.is_empty() {
-            Arc::make_mut(&mut self.scene).drawables.extend(unused);
+            let scene = Arc::make_mut(&mut self.scene);
+            scene.drawables.extend(unused);
+            // Below those of the parts that are used.
+            scene.overlay.polylines.splice(0..0, outlines);
         }
     }
 
@@ -203,6 +206,11 @@ impl Picture {
             window_from_part: layer.instance.world_from_part,
             offset: layer.instance.offset,
         })
+    }
+
+    /// True if the section cuts away what lies at a point of the window.
+    pub fn is_cut_away(&self, point: &Point3) -> bool {
+        self.clip.is_some_and(|plane| plane.distance(point) > 0.0)
     }
 
     /// True if nothing is drawn.
@@ -360,7 +368,10 @@ fn hit_layer(
         let look = looks.get(index as usize).copied();
         let point = pose.apply(&hit.point) + drawable.offset;
         let is_cut_away = clip.is_some_and(|plane| plane.distance(&point) > 0.0);
-        if look.unwrap_or(PartLook::default()).visible && !is_cut_away {
+        let value = value_at(layer, &hit);
+        let scale = layer.field.as_ref().map(|field| field.scale);
+        let is_beyond = value.is_some_and(|value| scale.is_some_and(|scale| scale.hides(value)));
+        if look.unwrap_or(PartLook::default()).visible && !is_cut_away && !is_beyond {
             let (node, node_id) = layer.mesh.nearest_node(&hit);
             let part = layer.mesh.part_id(index);
             let is_full = layer.mesh.source.level.is_none();
@@ -378,7 +389,7 @@ fn hit_layer(
                 further: layer.instance.further.clone(),
                 node: pose.apply(&node),
                 node_id,
-                value: value_at(layer, &hit),
+                value,
             };
             return Some(((point - ray.origin).norm(), hit));
         }

@@ -21,47 +21,53 @@ pub(in crate::ui::viewport) struct Summary {
 }
 
 impl Summary {
-    /// Of values at the nodes of a mesh, or at the corners of its triangles where `element` says which element
-    /// each belongs to. `None` where none is known. O(triangles).
-    pub(super) fn of(
-        mesh: &TriMesh,
-        values: &[f32],
-        element: Option<&dyn Fn(usize) -> u32>,
-    ) -> Option<Self> {
-        let mut found = Self {
+    fn nothing(is_of_elements: bool) -> Self {
+        Self {
             min: f64::INFINITY,
             max: f64::NEG_INFINITY,
             n: 0,
-            is_of_elements: element.is_some(),
+            is_of_elements,
             sum: 0.0,
             area: 0.0,
-        };
-        let mut last = None;
+        }
+    }
+
+    fn add(&mut self, value: f64, area: f64) {
+        self.min = self.min.min(value);
+        self.max = self.max.max(value);
+        self.sum += area * value;
+        self.area += area;
+    }
+
+    /// Of values at the nodes of a mesh. `None` where none is known. O(triangles).
+    pub(super) fn of_nodes(mesh: &TriMesh, values: &[f32]) -> Option<Self> {
+        let mut found = Self::nothing(false);
         for (triangle, corners) in mesh.triangles().iter().enumerate() {
             let area = mesh.triangle_area(triangle) / 3.0;
-            for (k, &node) in corners.iter().enumerate() {
-                let at = match element {
-                    Some(_) => 3 * triangle + k,
-                    None => node as usize,
-                };
-                let value = values.get(at).copied().map_or(f64::NAN, f64::from);
-                if value.is_finite() {
-                    found.min = found.min.min(value);
-                    found.max = found.max.max(value);
-                    found.sum += area * value;
-                    found.area += area;
+            for &node in corners {
+                let value = values.get(node as usize).copied().map(f64::from);
+                if let Some(value) = value.filter(|value| value.is_finite()) {
+                    found.add(value, area);
                 }
             }
-            // The triangles of an element follow each other.
-            if let Some(element) = element {
-                let is_known = values.get(3 * triangle).is_some_and(|v| v.is_finite());
-                let now = is_known.then(|| element(triangle));
-                found.n += usize::from(now.is_some() && now != last);
-                last = now;
-            }
         }
-        if element.is_none() {
-            found.n = values.iter().filter(|value| value.is_finite()).count();
+        found.n = values.iter().filter(|value| value.is_finite()).count();
+        (found.area > 0.0).then_some(found)
+    }
+
+    /// Of the values of the elements of a deck, to which the triangles of its full mesh belong. `None` where none is
+    /// known. O(triangles).
+    pub(super) fn of_elements(mesh: &TriMesh, elements: &[u32], values: &[f64]) -> Option<Self> {
+        let mut found = Self::nothing(true);
+        let mut last = None;
+        for (triangle, &element) in elements.iter().enumerate() {
+            let value = values.get(element as usize);
+            if let Some(&value) = value.filter(|value| value.is_finite()) {
+                found.add(value, mesh.triangle_area(triangle));
+                // The triangles of an element follow each other.
+                found.n += usize::from(last != Some(element));
+            }
+            last = Some(element);
         }
         (found.area > 0.0).then_some(found)
     }
@@ -91,11 +97,11 @@ impl Summary {
 
 /// Differences of values of these sizes; all zero where all are rounding, which shows nothing but noise.
 pub(super) fn without_rounding(
-    mut differences: Vec<f32>,
+    mut differences: Vec<f64>,
     sizes: impl Iterator<Item = f64>,
-) -> Vec<f32> {
+) -> Vec<f64> {
     let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
-    let is_rounding = |value: &f32| value.is_nan() || f64::from(value.abs()) <= ROUNDING * largest;
+    let is_rounding = |value: &f64| value.is_nan() || value.abs() <= ROUNDING * largest;
     if differences.iter().all(is_rounding) {
         let known = differences.iter_mut().filter(|value| !value.is_nan());
         known.for_each(|value| *value = 0.0);

@@ -16,9 +16,17 @@ use crate::ui::viewport::navigation::pos_of;
 const GAP: f32 = 8.0;
 /// Around the text of a plate.
 const PADDING: Vec2 = vec2(8.0, 4.0);
+/// Air between a plate and what it must not cover.
+const AIR: f32 = 3.0;
+/// Places of a plate along its line, as shares of it, and how much farther from the line than usual, tried in turn.
+const ALONG: [f32; 7] = [0.5, 0.35, 0.65, 0.2, 0.8, 0.0, 1.0];
+const FARTHER: [f32; 4] = [0.0, 30.0, 80.0, 150.0];
+/// Above the middle of the line, as near as usual.
+const ABOVE: (f32, f32, f32) = (0.5, 1.0, 0.0);
 
-/// The points that were picked and the line between them; after the first one the line ends at the pointer.
-pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
+/// The points that were picked and the line between them; after the first one the line ends at the pointer. The plate
+/// with the length keeps clear of what is `taken`.
+pub(super) fn show(ui: &Ui, over: &Overlay<'_>, taken: &[Rect]) {
     if over.frame.state.inspect.distance.is_none() {
         return;
     }
@@ -31,7 +39,7 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
     let places: Vec<_> = ends.iter().map(|end| place(over, end)).collect();
     if let ([from, to], [Some(a), Some(b)]) = (&ends[..], &places[..]) {
         ringed_line(&painter, over, [*a, *b]);
-        length(ui, over, [*from, *to], [*a, *b]);
+        length(ui, over, ([*from, *to], [*a, *b]), taken);
     }
     for at in places.into_iter().flatten() {
         ring(&painter, over, at, 4.5);
@@ -48,17 +56,24 @@ fn place(over: &Overlay<'_>, (role, point): &(Role, Point3)) -> Option<Pos2> {
     pos_of(over.frame.rect(), &over.frame.view.camera, &at).filter(|_| is_seen)
 }
 
-/// The length beside the middle of the line, and below it the way along each axis.
-fn length(ui: &Ui, over: &Overlay<'_>, ends: [(Role, Point3); 2], line: [Pos2; 2]) {
-    let texts = over.frame.state.distance_texts(ends);
+/// The length beside the line, below it the way along each axis, and which ends are centres of holes.
+fn length(
+    ui: &Ui,
+    over: &Overlay<'_>,
+    (ends, line): ([(Role, Point3); 2], [Pos2; 2]),
+    taken: &[Rect],
+) {
+    let state = over.frame.state;
+    let mut texts = state.distance_texts(ends).to_vec();
+    texts.extend(state.distance_holes(ends).map(str::to_owned));
     let painter = over.painter(ui);
-    let galley = painter.layout_job(two_lines(over, &texts));
-    let plate = beside(line, galley.size() + 2.0 * PADDING);
-    let plate = within(over.frame.rect().shrink(MARGIN / 2.0), plate);
+    let galley = painter.layout_job(lines(over, &texts));
+    let window = over.frame.rect().shrink(MARGIN / 2.0);
+    let plate = plate_place((window, taken), line, galley.size() + 2.0 * PADDING);
     let id = ui.make_persistent_id(("distance", over.role().word()));
     let response = ui.interact(plate, id, Sense::hover());
     response.widget_info(|| {
-        let name = format!("Distance {}, {}", texts[0], texts[1]);
+        let name = format!("Distance {}", texts.join(", "));
         WidgetInfo::labeled(egui::Role::Label, true, name)
     });
     let look = over.frame.look;
@@ -72,17 +87,61 @@ fn length(ui: &Ui, over: &Overlay<'_>, ends: [(Role, Point3); 2], line: [Pos2; 2
     painter.galley(plate.min + PADDING, galley, look.text);
 }
 
-fn two_lines(over: &Overlay<'_>, [length, axes]: &[String; 2]) -> LayoutJob {
+fn lines(over: &Overlay<'_>, texts: &[String]) -> LayoutJob {
     let look = over.frame.look;
     let mut job = LayoutJob::default();
-    let format = |size, color| TextFormat::simple(FontId::proportional(size), color);
-    job.append(length, 0.0, format(12.5, look.text));
-    job.append(&format!("\n{axes}"), 0.0, format(10.5, look.weak));
+    for (i, text) in texts.iter().enumerate() {
+        let (break_before, size, color) = match i {
+            0 => ("", 12.5, look.text),
+            _ => ("\n", 10.5, look.weak),
+        };
+        let format = TextFormat::simple(FontId::proportional(size), color);
+        job.append(&format!("{break_before}{text}"), 0.0, format);
+    }
     job
 }
 
-/// A plate above the middle of a line, which it does not touch.
-fn beside([from, to]: [Pos2; 2], size: Vec2) -> Rect {
+/// The first free place of a plate beside its line, above the middle before all others. Where none is free, it covers.
+fn plate_place((window, taken): (Rect, &[Rect]), line: [Pos2; 2], size: Vec2) -> Rect {
+    let is_free = |plate: &Rect| !taken.iter().any(|t| t.intersects(plate.expand(AIR)));
+    let sides = [1.0, -1.0];
+    let places = FARTHER.into_iter().flat_map(|farther| {
+        let along = ALONG
+            .into_iter()
+            .flat_map(move |share| sides.map(|side| (share, side)));
+        along.map(move |(share, side)| within(window, beside(line, (share, side, farther), size)))
+    });
+    let mut free = places.filter(|plate| is_free(plate) && !is_crossed(plate, line));
+    free.next()
+        .unwrap_or_else(|| within(window, beside(line, ABOVE, size)))
+}
+
+/// True if the line runs through the plate, or touches it nearly.
+fn is_crossed(plate: &Rect, [from, to]: [Pos2; 2]) -> bool {
+    let plate = plate.expand(AIR);
+    // Which part of the line lies between the edges, as shares of it.
+    let mut part = [0.0_f32, 1.0];
+    for axis in 0..2 {
+        let (low, high) = (plate.min[axis], plate.max[axis]);
+        let (at, way) = (from[axis], to[axis] - from[axis]);
+        if way == 0.0 {
+            if at < low || at > high {
+                return false;
+            }
+            continue;
+        }
+        let ends = [(low - at) / way, (high - at) / way];
+        part = [
+            part[0].max(ends[0].min(ends[1])),
+            part[1].min(ends[0].max(ends[1])),
+        ];
+    }
+    part[0] <= part[1]
+}
+
+/// A plate beside a line, which it does not touch: where along it, above (1) or below (−1), how much farther away than
+/// usual.
+fn beside([from, to]: [Pos2; 2], (share, side, farther): (f32, f32, f32), size: Vec2) -> Rect {
     let along = (to - from).normalized();
     let up = if along.x < 0.0 {
         vec2(-along.y, along.x)
@@ -90,8 +149,8 @@ fn beside([from, to]: [Pos2; 2], size: Vec2) -> Rect {
         vec2(along.y, -along.x)
     };
     let up = if up == Vec2::ZERO { -Vec2::Y } else { up };
-    let reach = 0.5 * (up.abs() * size).dot(Vec2::splat(1.0)) + GAP;
-    Rect::from_center_size(from + 0.5 * (to - from) + up * reach, size)
+    let reach = 0.5 * (up.abs() * size).dot(Vec2::splat(1.0)) + GAP + farther;
+    Rect::from_center_size(from + share * (to - from) + up * (side * reach), size)
 }
 
 /// The plate moved into the window.
@@ -119,15 +178,41 @@ mod tests {
             middle,
         ] {
             let line = [middle, end];
-            let plate = within(window, beside(line, size));
+            let plate = within(window, beside(line, ABOVE, size));
             for share in [0.0, 0.25, 0.5, 0.75, 1.0] {
                 let at = middle + share * (end - middle);
                 assert!(plate.distance_to_pos(at) > 0.9 * GAP, "{end:?}: {plate:?}");
             }
         }
         let outside = [pos2(-900.0, 20.0), pos2(-100.0, 10.0)];
-        assert!(window.contains_rect(within(window, beside(outside, size))));
+        assert!(window.contains_rect(within(window, beside(outside, ABOVE, size))));
         let small = Rect::from_min_size(Pos2::ZERO, vec2(50.0, 20.0));
-        assert_eq!(within(small, beside(outside, size)).min, small.min);
+        assert_eq!(within(small, beside(outside, ABOVE, size)).min, small.min);
+    }
+
+    #[test]
+    fn the_length_keeps_clear_of_labels_and_legend() {
+        let window = Rect::from_min_size(Pos2::ZERO, vec2(600.0, 400.0));
+        let size = vec2(120.0, 44.0);
+        let line = [pos2(150.0, 200.0), pos2(450.0, 200.0)];
+        let usual = plate_place((window, &[]), line, size);
+        assert_eq!(usual, beside(line, ABOVE, size));
+        // What lies over the usual place, over both sides of the middle, over all that is above.
+        let below = beside(line, (0.5, -1.0, 0.0), size);
+        let above = Rect::from_min_max(Pos2::ZERO, pos2(600.0, 195.0));
+        for taken in [&[usual][..], &[usual, below], &[above], &[above, below]] {
+            let plate = plate_place((window, taken), line, size);
+            let is_clear = taken.iter().all(|t| !t.intersects(plate));
+            assert!(
+                is_clear && window.contains_rect(plate),
+                "{taken:?}: {plate:?}"
+            );
+            for x in 150..450 {
+                let at = pos2(x as f32, 200.0);
+                assert!(plate.distance_to_pos(at) > 2.0, "{plate:?}");
+            }
+        }
+        // Nowhere is free.
+        assert_eq!(plate_place((window, &[window]), line, size), usual);
     }
 }

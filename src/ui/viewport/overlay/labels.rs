@@ -47,16 +47,16 @@ struct Placed<'a> {
 
 /// Draws the labels of the parts in this window. Plates keep clear of each other and of what else
 /// lies over the picture, and lie beside the parts where there is room; each stays where it was as long
-/// as it can.
-pub(super) fn show(ui: &Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
+/// as it can. Returns what other plates must not cover.
+pub(super) fn show(ui: &Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) -> Vec<Rect> {
     let labels: Vec<Placed<'_>> = placed(over);
+    let mut taken = taken(ui, over);
     if labels.is_empty() {
-        return;
+        return taken;
     }
     let memory = ui.make_persistent_id(("label places", over.role().word()));
     let last: BTreeMap<u64, usize> = ui.data(|data| data.get_temp(memory)).unwrap_or_default();
     let mut now = BTreeMap::new();
-    let mut taken = taken(ui, over);
     taken.extend(
         labels
             .iter()
@@ -74,6 +74,7 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
         one(ui, over, (placed, &texts, plate), commands);
     }
     ui.data_mut(|data| data.insert_temp(memory, now));
+    taken
 }
 
 fn placed<'a>(over: &Overlay<'a>) -> Vec<Placed<'a>> {

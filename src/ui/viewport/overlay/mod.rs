@@ -84,8 +84,8 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     pairs::show(ui, over);
     pairs::next(ui, over);
     section::handle(ui, over, commands);
-    labels::show(ui, over, commands);
-    distance::show(ui, over);
+    let taken = labels::show(ui, over, commands);
+    distance::show(ui, over, &taken);
     let legend = legend::show(ui, over, commands);
     marks::show(ui, over, legend);
     cube::show(ui, over, commands);

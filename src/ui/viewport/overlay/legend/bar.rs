@@ -5,13 +5,14 @@ use egui::{
     pos2, vec2,
 };
 
+use super::limits::{self, Limit};
 use super::menu;
 use super::tick_text;
 use crate::app::Command;
 use crate::colormap::{ColorScale, Pattern};
 use crate::text::{counted, length, signed};
 use crate::ui::theme::{color, ink};
-use crate::ui::viewport::fields::Summary;
+use crate::ui::viewport::fields::{FieldKind, Summary};
 use crate::ui::viewport::overlay::Overlay;
 
 /// Width of the bar.
@@ -19,7 +20,7 @@ pub(super) const BAR: f32 = 14.0;
 /// Left of the figures beside bar and ticks.
 const NUMBERS: f32 = 76.0;
 
-/// Title, menu, bar, ticks, and the figures of the values.
+/// Title, menu, bar with its limits, ticks, and the figures of the values.
 pub(super) fn plain(
     ui: &mut Ui,
     over: &Overlay<'_>,
@@ -32,9 +33,7 @@ pub(super) fn plain(
         ui.add(egui::Label::new(RichText::new(title).size(12.0)).wrap());
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             super::fold(ui, over);
-            let values = if scale.map == over.frame.state.view.display.coloring.signed_map
-                && scale.min == -scale.max
-            {
+            let values = if over.kind.is_some_and(FieldKind::has_signed_colors) {
                 menu::Values::Signed
             } else {
                 menu::Values::Plain
@@ -47,19 +46,34 @@ pub(super) fn plain(
         equal(ui, scale, over);
         return;
     }
+    let state = over.frame.state;
+    let mut display = state.view.display.clone();
+    let by = state.color_by(over.role());
+    let mut limits = display.limits.get(&by).copied();
+    limits::field(ui, over, scale, (Limit::Upper, 0.0), &mut limits);
     let (room, _) = ui.allocate_exact_size(vec2(super::WIDTH, height + 8.0), Sense::hover());
     let bar = Rect::from_min_size(room.min + vec2(2.0, 4.0), vec2(BAR, height));
     paint(ui.painter(), scale, bar, over);
-    ticks(ui.painter(), scale, bar, over, false);
+    ticks(ui.painter(), scale, bar, over, true);
+    limits::drag_ends(ui, over, scale, bar, &mut limits);
+    if limits::is_automatic_asked(ui, over, bar) {
+        limits = None;
+    }
     if let Some(summary) = over.summary {
         let left = pos2(room.left() + NUMBERS, room.top());
         let room = Rect::from_min_max(left, room.max);
         numbers(ui, over, &summary, (scale, room));
     }
+    limits::field(ui, over, scale, (Limit::Lower, 0.0), &mut limits);
+    limits::hide_box(ui, over, &mut display.coloring.hides_beyond);
+    match limits {
+        Some(limits) => display.limits.insert(by, limits),
+        None => display.limits.remove(&by),
+    };
+    menu::set(over, display, commands);
 }
 
-/// Extremes and mean of the values, and of how many they are. Those at nodes are means of the elements around, so that
-/// they differ from those of the elements, which the report states.
+/// Extremes of the values and their mean over the area, and of how many elements or nodes they are.
 fn numbers(ui: &mut Ui, over: &Overlay<'_>, of: &Summary, (scale, room): (&ColorScale, Rect)) {
     let number = if scale.min < 0.0 { signed } else { length };
     let values = if of.is_of_elements {

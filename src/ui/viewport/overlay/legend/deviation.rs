@@ -5,6 +5,7 @@ use egui::{
     Align, Button, CursorIcon, Layout, Rect, RichText, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 
+use super::limits::{self, Limit};
 use super::{Room, WIDTH, bar, menu, overlap};
 use crate::app::{Coloring, Command, Freshness, InspectCommand};
 use crate::assess::deviation::DeviationStats;
@@ -15,14 +16,12 @@ use crate::text::capital;
 use crate::ui::theme::{Palette, color};
 use crate::ui::typed::{Takes, told_field};
 use crate::ui::viewport::overlay::Overlay;
-use crate::ui::widgets::{length, paint_role_mark, percent, signed};
+use crate::ui::widgets::{length, paint_role_mark, percent};
 
 /// Width of the histogram beside the bar.
 const HISTOGRAM: f32 = 64.0;
 /// From an end of the bar to the middle of the field of its limit.
 const BESIDE_LIMIT: f32 = 16.0;
-/// How quickly a dragged limit grows, per point.
-const DRAG_RATE: f64 = 0.012;
 
 /// Everything about the deviation.
 pub(super) fn show(
@@ -45,25 +44,37 @@ pub(super) fn show(
     if over.frame.state.freshness() != Freshness::Current {
         ui.set_opacity(0.45);
     }
-    let before = over.frame.state.view.display.coloring;
-    let mut coloring = before;
+    let mut display = over.frame.state.view.display.clone();
+    let coloring = &mut display.coloring;
     if room.is_full {
         side_words(ui, over, "in front of crash", true);
     }
-    limit_field(ui, over, scale, Limit::Upper, &mut coloring);
-    bars(ui, over, (scale, stats), room.bar, &mut coloring);
-    limit_field(ui, over, scale, Limit::Lower, &mut coloring);
+    let beside = HISTOGRAM - 2.0;
+    limits::field(
+        ui,
+        over,
+        scale,
+        (Limit::Upper, beside),
+        &mut coloring.limits,
+    );
+    bars(ui, over, (scale, stats), room.bar, coloring);
+    limits::field(
+        ui,
+        over,
+        scale,
+        (Limit::Lower, beside),
+        &mut coloring.limits,
+    );
     if room.is_full {
         side_words(ui, over, "behind crash", false);
     }
+    limits::hide_box(ui, over, &mut coloring.hides_beyond);
     ui.add_space(2.0);
-    tolerance(ui, over, scale, stats, &mut coloring);
+    tolerance(ui, over, scale, stats, coloring);
     if room.is_full {
         numbers(ui, over, stats);
     }
-    if coloring != before {
-        menu::set(over, coloring, commands);
-    }
+    menu::set(over, display, commands);
 }
 
 /// Above the bar of the folded legend: whose colours they are, and faint if they are old.
@@ -137,10 +148,10 @@ fn title(ui: &mut Ui, over: &Overlay<'_>, role: Role, commands: &mut Vec<Command
                 .hline(rect.x_range(), rect.bottom() + 1.0, line);
         }
         if response.clicked() {
-            let mut coloring = over.frame.state.view.display.coloring;
-            *coloring.on.get_mut(role) = false;
-            *coloring.on.get_mut(other) = true;
-            menu::set(over, coloring, commands);
+            let mut display = over.frame.state.view.display.clone();
+            *display.coloring.on.get_mut(role) = false;
+            *display.coloring.on.get_mut(other) = true;
+            menu::set(over, display, commands);
         }
         let hint = format!(
             "Measured from the nodes of the {} part; click: on the {} part",
@@ -205,83 +216,6 @@ fn side_words(ui: &mut Ui, over: &Overlay<'_>, words: &str, is_front: bool) {
     ui.label(RichText::new(text).size(11.0).color(over.frame.look.weak));
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Limit {
-    Upper,
-    Lower,
-}
-
-impl Limit {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Upper => "Upper limit",
-            Self::Lower => "Lower limit",
-        }
-    }
-}
-
-/// The value at an end of the bar, typed or dragged.
-fn limit_field(
-    ui: &mut Ui,
-    over: &Overlay<'_>,
-    scale: &ColorScale,
-    limit: Limit,
-    coloring: &mut Coloring,
-) {
-    let mut value = match limit {
-        Limit::Upper => scale.max,
-        Limit::Lower => scale.min,
-    };
-    let before = value;
-    ui.horizontal(|ui| {
-        ui.add_space(HISTOGRAM - 2.0);
-        let takes = Takes::number(limit.name(), "", -1e9..=1e9);
-        let field = takes
-            .field(&mut value)
-            .speed(0.01 * scale.max.abs().max(scale.min.abs()))
-            .custom_formatter(|value, _| signed(value));
-        let is_alone = ui.input(|i| i.modifiers.alt);
-        let response = told_field(ui, limit.name(), before, field, |text| {
-            let value = takes.read(text)?;
-            limits_with(scale, limit, value, is_alone)?;
-            Ok(value)
-        });
-        response.widget_info(|| {
-            let name = format!("{} ({})", limit.name(), over.role().word());
-            WidgetInfo::labeled(egui::Role::SpinButton, true, name)
-        });
-        if response.changed()
-            && let Ok(limits) = limits_with(scale, limit, value, is_alone)
-        {
-            coloring.limits = Some(limits);
-        }
-        response.on_hover_text("Drag or type; both ends move together unless Alt is held");
-    });
-}
-
-/// The limits with a new value at one end, which the other end mirrors while they are symmetric, unless the end
-/// is moved alone; or why they are none.
-fn limits_with(
-    scale: &ColorScale,
-    limit: Limit,
-    value: f64,
-    is_alone: bool,
-) -> Result<[f64; 2], String> {
-    let is_alone = is_alone || scale.min != -scale.max;
-    let limits = match limit {
-        _ if !is_alone && value != 0.0 => [-value.abs(), value.abs()],
-        Limit::Upper => [scale.min, value],
-        Limit::Lower => [value, scale.max],
-    };
-    if limits[0] < limits[1] {
-        return Ok(limits);
-    }
-    Err(match limit {
-        Limit::Upper => format!("{}: above {}.", limit.name(), signed(scale.min)),
-        Limit::Lower => format!("{}: below {}.", limit.name(), signed(scale.max)),
-    })
-}
-
 /// Histogram, bar, ticks, and the handles on them.
 fn bars(
     ui: &mut Ui,
@@ -300,20 +234,14 @@ fn bars(
     histogram(ui, over, scale, stats, beside);
     bar::paint(ui.painter(), scale, bar_rect, over);
     bar::ticks(ui.painter(), scale, bar_rect, over, true);
-    for limit in [Limit::Upper, Limit::Lower] {
-        drag_end(ui, over, scale, (limit, bar_rect), coloring);
-    }
+    limits::drag_ends(ui, over, scale, bar_rect, &mut coloring.limits);
     for side in [1.0, -1.0] {
         drag_tolerance(ui, over, scale, (side, beside, bar_rect), coloring);
     }
-    let id = ui.make_persistent_id(("bar", over.role().word()));
-    let middle = bar_rect.shrink2(vec2(0.0, 14.0));
-    let response = ui.interact(middle, id, Sense::click());
-    if response.double_clicked() {
+    if limits::is_automatic_asked(ui, over, bar_rect) {
         coloring.limits = None;
         coloring.tolerance = None;
     }
-    response.on_hover_text("Double click: automatic limits");
 }
 
 /// How much area has which value: bars in the colours of the values, growing to the left.
@@ -357,56 +285,6 @@ fn histogram(ui: &Ui, over: &Overlay<'_>, scale: &ColorScale, stats: &DeviationS
                 egui::FontId::proportional(9.5),
                 over.frame.look.weak,
             );
-        }
-    }
-}
-
-/// An end of the bar, dragged up or down.
-fn drag_end(
-    ui: &Ui,
-    over: &Overlay<'_>,
-    scale: &ColorScale,
-    (limit, bar): (Limit, Rect),
-    coloring: &mut Coloring,
-) {
-    let y = match limit {
-        Limit::Upper => bar.top(),
-        Limit::Lower => bar.bottom(),
-    };
-    let grip = Rect::from_center_size(pos2(bar.center().x, y), vec2(bar.width() + 8.0, 14.0));
-    let id = ui.make_persistent_id((limit.name(), over.role().word()));
-    let response = ui.interact(grip, id, Sense::drag());
-    let response = response.on_hover_and_drag_cursor(CursorIcon::ResizeVertical);
-    response.widget_info(|| {
-        let name = format!("{} of the colours ({})", limit.name(), over.role().word());
-        WidgetInfo::labeled(egui::Role::Slider, true, name)
-    });
-    let is_held = response.hovered() || response.dragged();
-    let color = if is_held {
-        over.frame.look.tool
-    } else {
-        over.frame.look.weak
-    };
-    let reach = if is_held { 3.0 } else { 2.0 };
-    let line = bar.left() - reach..=bar.right() + reach;
-    ui.painter()
-        .hline(line, y, Stroke::new(if is_held { 3.0 } else { 2.0 }, color));
-    if response.dragged() {
-        let up = -f64::from(response.drag_delta().y);
-        let (value, outward) = match limit {
-            Limit::Upper => (scale.max, up),
-            Limit::Lower => (scale.min, -up),
-        };
-        let span = scale.max - scale.min;
-        let is_symmetric = scale.min == -scale.max;
-        let value = if is_symmetric {
-            value * (DRAG_RATE * outward).exp()
-        } else {
-            value + up * DRAG_RATE * span
-        };
-        let is_alone = ui.input(|i| i.modifiers.alt);
-        if let Ok(limits) = limits_with(scale, limit, value, is_alone) {
-            coloring.limits = Some(limits);
         }
     }
 }

@@ -3,7 +3,7 @@
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, PopupCloseBehavior, RichText, Ui};
 
-use crate::app::{Coloring, Command, ViewCommand};
+use crate::app::{Coloring, Command, Display, ViewCommand};
 use crate::colormap::ColorMap;
 use crate::role::Role;
 use crate::ui::viewport::overlay::Overlay;
@@ -26,24 +26,23 @@ pub(super) enum Values {
 pub(super) fn maps(ui: &mut Ui, over: &Overlay<'_>, values: Values, commands: &mut Vec<Command>) {
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let button = Button::new(RichText::new("Colours").size(11.5)).small();
-    let before = over.frame.state.view.display.coloring;
-    let mut coloring = before;
+    let mut display = over.frame.state.view.display.clone();
     let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
         ui.visuals_mut().override_text_color = None;
         ui.set_min_width(190.0);
         if values == Values::Deviation {
-            parts(ui, &mut coloring);
+            parts(ui, &mut display.coloring);
             ui.separator();
         }
-        choices(ui, &mut coloring, values);
+        choices(ui, &mut display.coloring, values);
+        ui.separator();
+        automatic(ui, over, &mut display, values);
     });
     let name = format!("Colour map ({})", over.role().word());
     response
         .on_hover_text("Colours, bands, pattern")
         .accessible_name(name);
-    if coloring != before {
-        set(over, coloring, commands);
-    }
+    set(over, display, commands);
 }
 
 fn parts(ui: &mut Ui, coloring: &mut Coloring) {
@@ -78,20 +77,31 @@ fn choices(ui: &mut Ui, coloring: &mut Coloring, values: Values) {
                 "Dots for positive, lines for negative values: readable without colours",
             );
     }
+}
+
+/// Limits that follow the values again.
+fn automatic(ui: &mut Ui, over: &Overlay<'_>, display: &mut Display, values: Values) {
+    let coloring = &mut display.coloring;
+    let by = over.frame.state.color_by(over.role());
+    let is_set = match values {
+        Values::Deviation => coloring.limits.is_some() || coloring.tolerance.is_some(),
+        Values::Plain | Values::Signed => display.limits.contains_key(&by),
+    };
+    let automatic = Button::new("Automatic limits");
+    if !ui.add_enabled(is_set, automatic).clicked() {
+        return;
+    }
     if values == Values::Deviation {
-        ui.separator();
-        let is_automatic = coloring.limits.is_none() && coloring.tolerance.is_none();
-        let automatic = Button::new("Automatic limits");
-        if ui.add_enabled(!is_automatic, automatic).clicked() {
-            coloring.limits = None;
-            coloring.tolerance = None;
-        }
+        coloring.limits = None;
+        coloring.tolerance = None;
+    } else {
+        display.limits.remove(&by);
     }
 }
 
 /// Takes new choices over.
-pub(super) fn set(over: &Overlay<'_>, coloring: Coloring, commands: &mut Vec<Command>) {
-    let mut display = over.frame.state.view.display.clone();
-    display.coloring = coloring;
-    commands.push(ViewCommand::SetDisplay(Box::new(display)).into());
+pub(super) fn set(over: &Overlay<'_>, display: Display, commands: &mut Vec<Command>) {
+    if display != over.frame.state.view.display {
+        commands.push(ViewCommand::SetDisplay(Box::new(display)).into());
+    }
 }

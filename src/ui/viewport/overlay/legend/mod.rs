@@ -3,6 +3,7 @@
 mod bar;
 mod deviation;
 mod files;
+mod limits;
 mod menu;
 mod overlap;
 mod status;
@@ -86,9 +87,9 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     let room = Room {
         is_full: window.height() >= FULL_HEIGHT,
         bar: if window.height() >= FULL_HEIGHT {
-            176.0
+            (window.height() - 290.0).clamp(150.0, 176.0)
         } else {
-            (window.height() - 190.0).clamp(70.0, 150.0)
+            (window.height() - 212.0).clamp(56.0, 150.0)
         },
     };
     Some(plate(ui, over, WIDTH, |ui| match kind {
@@ -104,6 +105,8 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
 /// Draws what the classes of a picture are.
 type Classes = fn(&mut Ui, &Overlay<'_>, &mut Vec<Command>);
 
+/// Height of the note below a folded legend.
+const NOTE: f32 = 16.0;
 /// Height of the button that opens a legend for which its window has no room.
 const BUTTON: f32 = 20.0;
 
@@ -258,12 +261,14 @@ fn slim(
     if over.is_equal() {
         bar::equal(ui, scale, over);
     } else {
-        let left = over.frame.rect().height() - top(over).unwrap_or(ABOVE) - BELOW - 84.0;
+        let note = if scale.hides_beyond { NOTE } else { 0.0 };
+        let left = over.frame.rect().height() - top(over).unwrap_or(ABOVE) - BELOW - 84.0 - note;
         let height = left.clamp(60.0, 220.0);
         let (room, _) = ui.allocate_exact_size(vec2(SLIM, height + 16.0), Sense::hover());
         let bar = Rect::from_min_size(room.min + vec2(1.0, 8.0), vec2(bar::BAR, height));
         bar::paint(ui.painter(), scale, bar, over);
         bar::ticks(ui.painter(), scale, bar, over, false);
+        limits::hidden_note(ui, over, scale);
     }
     ui.set_opacity(opacity);
     if can_open {
