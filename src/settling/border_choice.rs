@@ -361,8 +361,11 @@ impl<'a> PoseComparison<'a> {
         let beats = |a: &Refined, b: &Refined| a.has_more_holes_than(b, self.remainder());
         let is_better = |other: &Refined| {
             // Another trim moves outlines, and no hole.
-            let farthest = self.remainder().max(MUCH_FARTHER * result.worst_hole);
-            let misplaces_holes = result.n_holes >= other.n_holes && other.worst_hole > farthest;
+            let lie_closer = result.worst_hole <= self.remainder()
+                || MUCH_FARTHER * result.worst_hole < other.worst_hole;
+            let misplaces_holes = result.n_holes >= other.n_holes
+                && lie_closer
+                && other.worst_hole > self.remainder();
             let more = result.held + result.grain.max(MORE_HELD);
             let is_chance = other.n_holes == 0 && other.held <= BY_CHANCE;
             let holds_more =

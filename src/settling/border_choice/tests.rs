@@ -30,12 +30,20 @@ fn a_few_borders_hold_no_pose_unless_a_hole_is_among_them() {
     let (settings, monitor) = (AssessSettings::default(), Monitor::silent());
     let context = PairContext::new([&plate, &plate], &settings, &monitor);
     let comparison = PoseComparison::new(&context, 1.0);
+    let off = |held, worst_hole| Refined {
+        worst_hole,
+        ..refined(held, 0.8, 3)
+    };
     for (result, rival, wins) in [
         (refined(0.0, 0.3, 0), refined(0.14, 0.3, 0), false),
         (refined(0.0, 0.3, 0), refined(0.14, 0.3, 1), true),
         (refined(0.0, 0.3, 0), refined(0.4, 0.6, 0), true),
         (refined(0.4, 0.6, 0), refined(0.401, 0.6, 0), false),
         (refined(0.4, 0.6, 2), refined(0.4, 0.6, 1), false),
+        // Outlines may be trimmed elsewhere, holes may not lie elsewhere.
+        (off(0.3, 1.8), off(0.6, 5.5), false),
+        (off(0.3, 0.9), off(0.6, 1.1), false),
+        (off(0.3, 1.8), off(0.6, 2.2), true),
     ] {
         let choice = comparison.choice(&result, &result, &[rival]);
         assert_eq!(choice.is_some(), wins, "{} of {}", rival.held, result.held);
