@@ -37,7 +37,7 @@ const SURELY: f64 = 3.0;
 /// Fewer holes determine neither their mean nor how much they scatter.
 const LEAST_HOLES: usize = 4;
 /// Borders lie together up to this share of how far they may lie apart.
-const TOGETHER: f64 = 0.5;
+pub(super) const TOGETHER: f64 = 0.5;
 /// Patches that are searched for the place of the largest difference: 2 to this power.
 const PLACE_LEVELS: u32 = 5;
 

@@ -1,11 +1,11 @@
 //! The two statements about a pair under a pose: how far the pose may be off, and whether the shapes are one.
 
-use super::borders::BorderComparison;
+use super::borders::{BorderComparison, HOLES_THAT_HOLD};
 use super::contact::{ContactSearch, MAX_NODES};
 use super::decide::NEAR_MIRROR;
 use super::evidence::{EvidenceSearch, PoseEvidence};
 use super::fit::Fit;
-use super::shape::ShapeStatement;
+use super::shape::{ShapeStatement, TOGETHER};
 use super::tolerance::{AssessSettings, Distances, ShapeTolerance};
 use super::trims;
 use super::uncertainty::PoseUncertainty;
@@ -14,6 +14,8 @@ use crate::registration::{MatchOutcome, Surface};
 
 /// An offset of the sheets is removed where the motion that is left to the pose is at most this share of it.
 const LEFT: f64 = 0.1;
+/// Outlines lie together if this share of those beside others does.
+const ALL_TOGETHER: f64 = 0.9;
 
 /// How far the pose may be off, and whether the shapes are one.
 pub(super) struct Statements {
@@ -39,8 +41,7 @@ pub(super) fn statements(
     let compared = Compared::under(pair, pose, settings, Outlines::Compared);
     let uncertainty = compared.met.as_ref();
     Statements {
-        uncertainty: uncertainty
-            .and_then(|met| PoseUncertainty::of(&met.evidence, &met.fit, settings.thickness)),
+        uncertainty: uncertainty.and_then(|met| met.uncertainty(settings, &compared.tolerance)),
         shape: compared.shape(settings),
     }
 }
@@ -116,6 +117,28 @@ impl<'a> Compared<'a> {
 }
 
 impl<'a> Met<'a> {
+    fn uncertainty(
+        &self,
+        settings: &AssessSettings,
+        tolerance: &ShapeTolerance,
+    ) -> Option<PoseUncertainty> {
+        let other_trims = if self.is_held_by_trims(tolerance) {
+            tolerance.remainder
+        } else {
+            0.0
+        };
+        PoseUncertainty::of(&self.evidence, &self.fit, settings.thickness, other_trims)
+    }
+
+    /// Whether outlines and no holes hold the part while some of them lie apart: the others may have been trimmed
+    /// elsewhere too.
+    fn is_held_by_trims(&self, tolerance: &ShapeTolerance) -> bool {
+        let borders = &self.evidence.borders;
+        let together = borders.share_within(&self.fit.borders, TOGETHER * borders.limit(tolerance));
+        let lie_apart = self.other_trim.is_some() || together < ALL_TOGETHER * borders.share();
+        borders.holes.len() < HOLES_THAT_HOLD && lie_apart
+    }
+
     fn of(mut evidence: PoseEvidence<'a>, tolerance: &ShapeTolerance, outlines: Outlines) -> Self {
         let (fit, other_trim) = match outlines {
             Outlines::LeftOut => {
@@ -136,4 +159,45 @@ impl<'a> Met<'a> {
 fn is_removed(fit: &Fit, shape: &ShapeStatement) -> bool {
     let offset = shape.offset.and(fit.separate_offset());
     offset.is_some_and(|offset| fit.rigid.norm() <= LEFT * offset.abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Point3, TriMesh};
+
+    /// A plate of 300 by 120 whose far edges lie so far out of there.
+    fn plate(out: [f64; 2]) -> Surface {
+        let (n, m) = (150_u32, 60_u32);
+        let point = |i: u32, j: u32| {
+            let [x, y] = [(i, n, out[0]), (j, m, out[1])]
+                .map(|(i, last, out)| 2.0 * f64::from(i) + if i == last { out } else { 0.0 });
+            Point3::new(x, y, 0.0)
+        };
+        let points = (0..=n).flat_map(|i| (0..=m).map(move |j| point(i, j)));
+        let cells = (0..n).flat_map(|i| (0..m).map(move |j| i * (m + 1) + j));
+        let up = m + 1;
+        let triangles = cells.flat_map(|a| [[a, a + up, a + up + 1], [a, a + up + 1, a + 1]]);
+        let mesh = TriMesh::new(points.collect(), triangles.collect()).unwrap();
+        Surface::new(&mesh, "source").unwrap()
+    }
+
+    #[test]
+    fn outlines_are_known_no_better_than_trims_where_some_lie_apart() {
+        let (whole, settings) = (plate([0.0; 2]), AssessSettings::default());
+        for (out, is_held_by_trims) in [([0.0; 2], false), ([-1.5, 1.5], true)] {
+            let pair = [&plate(out), &whole];
+            let pose = Similarity::identity();
+            let compared = Compared::under(pair, &pose, &settings, Outlines::Compared);
+            let met = compared.met.unwrap();
+            assert_eq!(met.is_held_by_trims(&compared.tolerance), is_held_by_trims);
+            let largest = |other_trims| {
+                let found = PoseUncertainty::of(&met.evidence, &met.fit, None, other_trims);
+                found.unwrap().largest
+            };
+            let (without, with) = (largest(0.0), largest(1.0));
+            let by_trims = (with * with - without * without).sqrt();
+            assert!((0.5..3.0).contains(&by_trims), "{without} {with}");
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
-use super::borders::Borders;
+use super::borders::{Borders, PairKind};
 use super::contact::{Contacts, STATED_SHARE};
 use super::evidence::PoseEvidence;
 use super::fit::{Fit, LEAST_OWN};
@@ -101,11 +101,13 @@ pub struct PoseUncertainty {
 
 impl PoseUncertainty {
     /// Measures the uncertainty of the evidence's pose. `fit` takes its gaps apart, `thickness` is that of the
-    /// sheet, if it is known. `None` where the part has no area.
+    /// sheet, if it is known, `other_trims` how far elsewhere each side may have been trimmed. `None` where the part
+    /// has no area.
     pub(super) fn of(
         evidence: &PoseEvidence<'_>,
         fit: &Fit,
         thickness: Option<f64>,
+        other_trims: f64,
     ) -> Option<Self> {
         let PoseEvidence {
             source,
@@ -117,7 +119,14 @@ impl PoseUncertainty {
             [&fit.smooth, &fit.left].map(|values| contacts.at_share(values, STATED_SHARE));
         // Where about as much remains as is bent, the bends stand for something else.
         let unbent = Some(fit.rigid).filter(|_| bend > CLEARLY_BENT * left);
-        let (mut motions, offset_as_motion) = replicates(evidence, unbent);
+        let Replicates {
+            mut motions,
+            offset_as_motion,
+            equations,
+        } = replicates(evidence, unbent);
+        if other_trims > 0.0 {
+            motions.extend(trimmed_elsewhere(evidence, &equations, other_trims));
+        }
         let unknown_offset = offset_as_motion.and(thickness).map_or(0.0, |t| 0.5 * t);
         motions.extend(offset_as_motion.map(|motion| motion * unknown_offset));
         let motions: Vec<SmallMotion> = motions
@@ -233,10 +242,48 @@ fn bent(bend: f64) -> [SmallMotion; 3] {
     })
 }
 
-/// Motions whose squares sum to the square of the uncertainty: those of the jackknife, and the step by which borders,
-/// an offset of the sheets or a bend (`unbent`) would move the pose. Where an offset is what the gaps are, it is solved
-/// for with every motion. With them the motion that is not separable from an offset of one, if there is one.
-fn replicates(evidence: &PoseEvidence<'_>, unbent: Option<Six>) -> (Vec<Six>, Option<Six>) {
+/// How the outlines would move the pose if those of one side of the part after the other had been trimmed elsewhere by
+/// so much: all of a side then lie off alike, which no patch that is left out shows.
+fn trimmed_elsewhere(
+    evidence: &PoseEvidence<'_>,
+    equations: &NormalEquations<7>,
+    by: f64,
+) -> [Six; 6] {
+    let axes = evidence.source.measures().principal_axes;
+    let turned = axes.transpose() * evidence.pose.rotation.transpose();
+    let mut sides = [Seven::zeros(); 6];
+    let weights = evidence.borders.weights(evidence.noise);
+    let pairs = evidence.borders.pairs().iter().zip(weights);
+    for (pair, weight) in pairs.filter(|(pair, _)| pair.kind == PairKind::Outlines) {
+        let across = turned * pair.across;
+        let axis = across.iamax();
+        let side = 2 * axis + usize::from(across[axis] < 0.0);
+        let row = evidence.contacts.row(&pair.point, &pair.across);
+        sides[side] += row.push(0.0) * (weight * by);
+    }
+    sides.map(|right| {
+        let of_side = NormalEquations {
+            right,
+            ..equations.clone()
+        };
+        motion_of(&of_side.solved())
+    })
+}
+
+/// What [`replicates`] finds.
+struct Replicates {
+    /// Motions whose squares sum to the square of the uncertainty: those of the jackknife, and the step by which
+    /// borders, an offset of the sheets or a bend would move the pose.
+    motions: Vec<Six>,
+    /// The motion that is not separable from an offset of one, if there is one.
+    offset_as_motion: Option<Six>,
+    /// What determines the pose.
+    equations: NormalEquations<7>,
+}
+
+/// The poses of the jackknife; `unbent` is the step by which a bend would move the pose. Where an offset is what the
+/// gaps are, it is solved for with every motion.
+fn replicates(evidence: &PoseEvidence<'_>, unbent: Option<Six>) -> Replicates {
     let (contacts, noise) = (&evidence.contacts, evidence.noise);
     let gaps: Vec<f64> = contacts.list.iter().map(|c| c.gap).collect();
     let areas: Vec<f64> = contacts.list.iter().map(|c| c.weight).collect();
@@ -292,10 +339,11 @@ fn replicates(evidence: &PoseEvidence<'_>, unbent: Option<Six>) -> (Vec<Six>, Op
     );
     let matrix = all.equations.matrix.fixed_view::<6, 6>(0, 0).into_owned();
     motions.extend(weak_motions(&matrix, &weights, &gaps, contacts, noise));
-    (
+    Replicates {
         motions,
-        (!is_separable).then(|| motion_of(&offset_as_motion)),
-    )
+        offset_as_motion: (!is_separable).then(|| motion_of(&offset_as_motion)),
+        equations: all.equations,
+    }
 }
 
 fn equations_of_patches(
