@@ -23,16 +23,22 @@ fn told(window: &Harness<'static, Shell>) -> Vec<String> {
     all.filter_map(text).collect()
 }
 
+/// The example pair, while points of a distance are clicked.
+fn measuring() -> Harness<'static, Shell> {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    window.key_press(egui::Key::I);
+    window
+}
+
 fn is_painted(window: &Harness<'static, Shell>, text: &str) -> bool {
     texts(window).iter().any(|painted| painted.text == text)
 }
 
 #[test]
 fn a_double_click_is_one_point() {
-    let mut window = window();
-    click(&mut window, "Open the example pair");
-    finish(&mut window);
-    window.key_press(egui::Key::I);
+    let mut window = measuring();
     let off = [-60.0, -50.0].into();
     click_in(&mut window, Role::Crash, off);
     let pos = window.ctx.input(|i| i.pointer.latest_pos());
@@ -58,10 +64,7 @@ fn a_double_click_is_one_point() {
 
 #[test]
 fn two_clicks_draw_a_distance_and_escape_takes_it_away() {
-    let mut window = window();
-    click(&mut window, "Open the example pair");
-    finish(&mut window);
-    window.key_press(egui::Key::I);
+    let mut window = measuring();
     window.run_steps(2);
     assert!(is_painted(&window, "Click the first point"));
     click_in(&mut window, Role::Crash, [-60.0, -50.0].into());
@@ -98,10 +101,7 @@ fn two_clicks_draw_a_distance_and_escape_takes_it_away() {
 /// The pointer in a round hole takes its centre, and the plate says so.
 #[test]
 fn a_distance_from_a_hole_begins_at_its_centre() {
-    let mut window = window();
-    click(&mut window, "Open the example pair");
-    finish(&mut window);
-    window.key_press(egui::Key::I);
+    let mut window = measuring();
     window.run_steps(30);
     let state = window.state().state();
     let part = state.document.part(Role::Crash).expect("loaded");

@@ -39,6 +39,7 @@ pub mod parameter;
 mod parameter_card;
 pub mod parameter_error;
 mod parts;
+mod plies;
 pub mod rename;
 mod resolve;
 mod results;

@@ -336,29 +336,40 @@ mod tests {
         state
     }
 
-    #[test]
-    fn unused_parts_are_drawn_on_request_faint_and_where_they_lie() {
-        let mut state = with_neighbour();
-        let mut store = UnusedStore::new(true);
-        let (look, ctx) = (Look::of(true), egui::Context::default());
-        let view = ViewFrame {
+    fn crash_window() -> ViewFrame {
+        ViewFrame {
             window: Role::Crash,
             camera: Camera::default(),
             aspect: 1.0,
             pose: Similarity::identity(),
             over: 0.0,
             is_bare: false,
-        };
+        }
+    }
+
+    /// Draws until all that was asked for is there.
+    fn wait(store: &mut UnusedStore, draw: impl Fn(&mut UnusedStore)) {
+        let begin = Instant::now();
+        while store.is_waiting() {
+            assert!(begin.elapsed() < Duration::from_secs(60));
+            std::thread::sleep(Duration::from_millis(1));
+            draw(store);
+        }
+    }
+
+    #[test]
+    fn unused_parts_are_drawn_on_request_faint_and_where_they_lie() {
+        let mut state = with_neighbour();
+        let mut store = UnusedStore::new(true);
+        let (look, ctx) = (Look::of(true), egui::Context::default());
+        let view = crash_window();
         let mut drawn = |state: &AppState| {
             let shown = visible_parts(state, &view);
             assert_eq!(shown.len(), 1);
             store.drawables((state, &view), &look, &shown, &ctx);
-            let begin = Instant::now();
-            while store.is_waiting() {
-                assert!(begin.elapsed() < Duration::from_secs(60));
-                std::thread::sleep(Duration::from_millis(1));
+            wait(&mut store, |store| {
                 store.drawables((state, &view), &look, &shown, &ctx);
-            }
+            });
             store.drawables((state, &view), &look, &shown, &ctx)
         };
         assert_eq!(drawn(&state).len(), 0);
@@ -387,25 +398,15 @@ mod tests {
         let mut state = with_neighbour();
         let mut store = UnusedStore::new(true);
         let (look, ctx) = (Look::of(true), egui::Context::default());
-        let view = ViewFrame {
-            window: Role::Crash,
-            camera: Camera::default(),
-            aspect: 1.0,
-            pose: Similarity::identity(),
-            over: 0.0,
-            is_bare: false,
-        };
+        let view = crash_window();
         let mut cut = |state: &AppState| {
             let shown = visible_parts(state, &view);
-            let begin = Instant::now();
             // The outlines are asked for once the mesh is there.
             for _ in 0..2 {
                 store.drawables((state, &view), &look, &shown, &ctx);
-                while store.is_waiting() {
-                    assert!(begin.elapsed() < Duration::from_secs(60));
-                    std::thread::sleep(Duration::from_millis(1));
+                wait(&mut store, |store| {
                     store.drawables((state, &view), &look, &shown, &ctx);
-                }
+                });
             }
             (store.outlines(Role::Crash, &look, &shown), store.flat())
         };

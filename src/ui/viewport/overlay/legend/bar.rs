@@ -1,8 +1,8 @@
 //! The bar of colours with its ticks.
 
 use egui::{
-    Align, Align2, FontId, Layout, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, UiBuilder,
-    pos2, vec2,
+    Align, Align2, Color32, CursorIcon, FontId, Layout, Painter, Pos2, Rect, Response, RichText,
+    Sense, Stroke, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
 use super::limits::{self, Limit};
@@ -19,6 +19,33 @@ use crate::ui::viewport::overlay::Overlay;
 pub(super) const BAR: f32 = 14.0;
 /// Left of the figures beside bar and ticks.
 const NUMBERS: f32 = 76.0;
+
+/// A mark beside the bar that is dragged up and down; `name` is told to screen readers with the part.
+pub(super) struct Grip {
+    pub(super) response: Response,
+    pub(super) is_held: bool,
+    pub(super) color: Color32,
+}
+
+impl Grip {
+    pub(super) fn new(ui: &Ui, over: &Overlay<'_>, at: Rect, name: &str) -> Self {
+        let role = over.role().word();
+        let id = ui.make_persistent_id((name, role));
+        let response = ui.interact(at, id, Sense::drag());
+        let response = response.on_hover_and_drag_cursor(CursorIcon::ResizeVertical);
+        response.widget_info(|| {
+            WidgetInfo::labeled(egui::Role::Slider, true, format!("{name} ({role})"))
+        });
+        let is_held = response.hovered() || response.dragged();
+        let look = &over.frame.look;
+        let color = if is_held { look.tool } else { look.weak };
+        Self {
+            response,
+            is_held,
+            color,
+        }
+    }
+}
 
 /// Title, menu, bar with its limits, ticks, and the figures of the values.
 pub(super) fn plain(

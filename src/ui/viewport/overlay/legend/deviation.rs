@@ -1,10 +1,9 @@
 //! The legend of the deviation: colours with a histogram, limits and tolerance to drag, and what the
 //! numbers say.
 
-use egui::{
-    Align, Button, CursorIcon, Layout, Rect, RichText, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
-};
+use egui::{Align, Button, Layout, Rect, RichText, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
+use super::bar::Grip;
 use super::limits::{self, Limit};
 use super::{Room, WIDTH, bar, menu, overlap};
 use crate::app::{Coloring, Command, Freshness, InspectCommand};
@@ -303,25 +302,17 @@ fn drag_tolerance(
     }
     let y = bar::y_of(scale, bar, value);
     let from = beside.left();
-    let grip = Rect::from_min_max(pos2(from, y - 5.0), pos2(bar.left() - 1.0, y + 5.0));
+    let at = Rect::from_min_max(pos2(from, y - 5.0), pos2(bar.left() - 1.0, y + 5.0));
     let name = if side > 0.0 {
         "Upper tolerance"
     } else {
         "Lower tolerance"
     };
-    let id = ui.make_persistent_id((name, over.role().word()));
-    let response = ui.interact(grip, id, Sense::drag());
-    let response = response.on_hover_and_drag_cursor(CursorIcon::ResizeVertical);
-    response.widget_info(|| {
-        let name = format!("{name} ({})", over.role().word());
-        WidgetInfo::labeled(egui::Role::Slider, true, name)
-    });
-    let is_held = response.hovered() || response.dragged();
-    let color = if is_held {
-        over.frame.look.tool
-    } else {
-        over.frame.look.weak
-    };
+    let Grip {
+        response,
+        is_held,
+        color,
+    } = Grip::new(ui, over, at, name);
     let stroke = Stroke::new(if is_held { 1.5 } else { 1.0 }, color);
     let dashes = [pos2(from, y), pos2(bar.left(), y)];
     ui.painter()

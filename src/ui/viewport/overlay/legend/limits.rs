@@ -1,7 +1,8 @@
 //! The values at the ends of a bar of colours, typed or dragged, and whether what lies beyond them is drawn.
 
-use egui::{CursorIcon, Rect, RichText, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{Rect, RichText, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
+use super::bar::Grip;
 use crate::colormap::ColorScale;
 use crate::text::{length, signed};
 use crate::ui::typed::{Takes, told_field};
@@ -119,20 +120,12 @@ fn drag_end(
         Limit::Upper => bar.top(),
         Limit::Lower => bar.bottom(),
     };
-    let grip = Rect::from_center_size(pos2(bar.center().x, y), vec2(bar.width() + 8.0, 14.0));
-    let id = ui.make_persistent_id((limit.name(), over.role().word()));
-    let response = ui.interact(grip, id, Sense::drag());
-    let response = response.on_hover_and_drag_cursor(CursorIcon::ResizeVertical);
-    response.widget_info(|| {
-        let name = format!("{} of the colours ({})", limit.name(), over.role().word());
-        WidgetInfo::labeled(egui::Role::Slider, true, name)
-    });
-    let is_held = response.hovered() || response.dragged();
-    let color = if is_held {
-        over.frame.look.tool
-    } else {
-        over.frame.look.weak
-    };
+    let at = Rect::from_center_size(pos2(bar.center().x, y), vec2(bar.width() + 8.0, 14.0));
+    let Grip {
+        response,
+        is_held,
+        color,
+    } = Grip::new(ui, over, at, &format!("{} of the colours", limit.name()));
     let reach = if is_held { 3.0 } else { 2.0 };
     let line = bar.left() - reach..=bar.right() + reach;
     ui.painter()

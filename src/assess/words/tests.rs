@@ -1,0 +1,60 @@
+//! What the words of an assessment say, and what they leave out.
+
+use super::{as_well, error_beside};
+use crate::assess::Reason;
+use crate::text::Lengths;
+
+#[test]
+fn equally_is_said_only_of_what_rounds_to_no_difference() {
+    for (ratio, words) in [
+        (1.0, "equally well"),
+        (1.004, "equally well"),
+        (0.997, "equally well"),
+        (1.04, "nearly as well"),
+        (0.98, "at least as well"),
+    ] {
+        assert_eq!(as_well(ratio), words);
+    }
+}
+
+/// What stands beside them as figures is not said in the sentences too; all else is.
+#[test]
+fn sentences_beside_figures_leave_these_out() {
+    let lengths = Lengths::default();
+    let good = Reason::InOrder {
+        overlap: 0.87,
+        p95: 0.4,
+        rivals_sought: true,
+    };
+    assert!(good.words(lengths).contains("87"));
+    let beside = good.words_beside_figures(lengths);
+    assert_eq!(beside, "no other pose fits nearly as well");
+    assert!(good.words(lengths).ends_with(&beside));
+    let both = Reason::BothOverhang {
+        source: 0.61,
+        target: 0.55,
+    };
+    let beside = both.words_beside_figures(lengths);
+    assert_eq!(beside, "neither part contains the other");
+    assert_eq!(
+        Reason::Stopped.words_beside_figures(lengths),
+        Reason::Stopped.words(lengths)
+    );
+}
+
+#[test]
+fn ratios_are_read_as_differences_of_the_error() {
+    let pairs = [
+        (1.08, "error 8 % higher"),
+        (1.0004, "equal error"),
+        (1.003, "error 0.3 % higher"),
+        (0.93, "error 7 % lower"),
+        (0.18, "error 5.6 × lower"),
+        (12.34, "error 12.3 × higher"),
+        (f64::INFINITY, "error far higher"),
+        (0.0, "error far lower"),
+    ];
+    for (ratio, words) in pairs {
+        assert_eq!(error_beside(ratio), words);
+    }
+}
