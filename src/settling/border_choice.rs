@@ -57,7 +57,7 @@ const BY_CHANCE: f64 = 0.15;
 const TWICE_AS_BAD: f64 = 0.05;
 /// Where less than this share of the result's own borders beside like ones lies where it belongs, the parts were trimmed
 /// differently, …
-const TRIMMED_ALIKE: f64 = 0.8;
+const TRIMMED_ALIKE: f64 = 0.9;
 /// … and a pose under which at least this share of all borders does is as likely by its outlines.
 const HELD_BY_OTHERS: f64 = 0.4;
 /// Distances of surfaces up to this share of the tolerance are negligible.
@@ -292,11 +292,11 @@ impl Refined {
     }
 
     /// Whether the outlines do not distinguish this pose from the winner: they lie apart in places under the winner too,
-    /// where the parts were trimmed differently, enough of the borders hold this pose, and the holes do as under the
-    /// winner.
+    /// where the parts were trimmed differently, enough of the borders hold this pose, and no hole lies much farther
+    /// from its counterpart than under the winner.
     fn is_held_as_well(&self, winner: &Self, within: f64) -> bool {
         let has_its_holes = self.n_holes >= winner.n_holes
-            && self.worst_hole <= within.max(winner.worst_hole)
+            && self.worst_hole <= within.max(MUCH_FARTHER * winner.worst_hole)
             && self.missing <= winner.missing + self.grain;
         let are_trimmed_alike = winner.held >= TRIMMED_ALIKE * winner.alike;
         !are_trimmed_alike && self.held >= HELD_BY_OTHERS && has_its_holes

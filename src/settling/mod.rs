@@ -82,6 +82,7 @@ pub fn settle(
     {
         outcome.target_from_source = pose;
     }
+    drop_same_poses(&context, outcome);
     measure_scale(&context, outcome, &found)
 }
 
@@ -126,6 +127,14 @@ fn remove_bend(context: &PairContext<'_>, outcome: &mut MatchOutcome) -> Result<
         outcome.target_from_source = pose;
     }
     Ok(())
+}
+
+/// Leaves out alternatives that the steps have moved the pose to.
+fn drop_same_poses(context: &PairContext<'_>, outcome: &mut MatchOutcome) {
+    let part = context.source.measures().into();
+    let pose = outcome.target_from_source;
+    let alternatives = &mut outcome.alternatives;
+    alternatives.retain(|other| !same_pose(&other.target_from_source, &pose, &part));
 }
 
 /// Where another pose took the place of the one that the match found, whose pairs say nothing about it, the scale is
@@ -176,19 +185,46 @@ mod tests {
         Surface::new(&mesh, "source").unwrap()
     }
 
+    /// A match of two surfaces with the same nodes.
+    fn superposed(source: &Surface, target: &Surface) -> MatchOutcome {
+        let input = MatchInput {
+            source,
+            target,
+            reduced: None,
+        };
+        let settings = MatchSettings::of(Method::Umeyama);
+        match_surfaces(&input, &settings, &Monitor::silent()).unwrap()
+    }
+
+    #[test]
+    fn a_pose_is_no_alternative_to_itself() {
+        let part = cap(100.0);
+        let (check, monitor) = (AssessSettings::default(), Monitor::silent());
+        let mut outcome = superposed(&part, &part);
+        let shifted = |shift: f64| {
+            let mut pose = Similarity::identity();
+            pose.translation.x = shift;
+            as_likely(pose, &outcome)
+        };
+        let alternatives = [shifted(0.5), shifted(50.0)];
+        outcome.alternatives = alternatives.to_vec();
+        outcome.target_from_source = Similarity::identity();
+        let context = PairContext::new([&part, &part], &check, &monitor);
+        drop_same_poses(&context, &mut outcome);
+        let left = outcome.alternatives.iter();
+        let left: Vec<f64> = left
+            .map(|other| other.target_from_source.translation.x)
+            .collect();
+        assert_eq!(left, [50.0]);
+    }
+
     #[test]
     fn the_scale_of_the_pairs_is_that_under_the_pose_that_was_chosen() {
         let (small, large) = (cap(100.0), cap(100.5));
         let (check, monitor) = (AssessSettings::default(), Monitor::silent());
         for (source, target, scale) in [(&small, &large, 1.005), (&large, &small, 1.0 / 1.005)] {
             let context = PairContext::new([source, target], &check, &monitor);
-            let input = MatchInput {
-                source,
-                target,
-                reduced: None,
-            };
-            let settings = MatchSettings::of(Method::Umeyama);
-            let mut outcome = match_surfaces(&input, &settings, &monitor).unwrap();
+            let mut outcome = superposed(source, target);
             outcome.target_from_source = Similarity::identity();
             outcome.scale_check.pair_scale = 1.3;
             // A pose that was only moved keeps what its pairs said.
