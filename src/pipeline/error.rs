@@ -155,6 +155,9 @@ pub enum PipelineError {
     /// A copy of the deck would leave elements without their thickness.
     #[error("{0}")]
     MapOutput(String),
+    /// What is written would be made of other contents than those that were read.
+    #[error("the file has changed since it was read; reload it, map and write again: {0:?}")]
+    Changed(PathBuf),
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

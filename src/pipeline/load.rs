@@ -184,24 +184,6 @@ impl LoadedPart {
         self.model.files.first()?.hash
     }
 
-    /// Where its files can be read again: on disk, or in the program where it is an example.
-    pub(super) fn file_source(&self) -> Box<dyn FileSource> {
-        let own_of = |files: Vec<SampleFile>| {
-            let mut named = files
-                .into_iter()
-                .filter(|file| self.path == Path::new(file.name));
-            named.find(|file| self.hash() == Some(FileHash::of(&file.bytes)))
-        };
-        let mut own = own_of(samples::bundled());
-        if own.is_none() && Disk.find(&self.path).is_none() {
-            own = own_of(samples::realistic());
-        }
-        match own {
-            Some(file) => Box::new(Memory::new().with(file.name, file.bytes)),
-            None => Box::new(Disk),
-        }
-    }
-
     /// The units of the file: as the user set them, else as they were guessed.
     pub fn units(&self) -> Option<KnownUnits> {
         let by_user = self.settings.units.map(|units| KnownUnits {

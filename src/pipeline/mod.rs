@@ -20,6 +20,7 @@ pub mod outputs;
 pub mod preferences;
 mod process;
 pub mod project;
+mod read_again;
 pub mod reduce;
 pub mod sweep;
 mod sweep_record;

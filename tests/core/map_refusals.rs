@@ -2,10 +2,15 @@
 //! order, decks that are cut off, names that do not exist.
 
 use shapematch::app::Action;
-use shapematch::role::Role;
+use shapematch::monitor::Monitor;
+use shapematch::pipeline::PipelineError;
+use shapematch::pipeline::map::WriteKind;
+use shapematch::pipeline::outputs::{Output, OutputInput};
+use shapematch::role::{PerRole, Role};
+use shapematch::samples::SampleVariant;
 
 use super::app::Window;
-use super::app_mapping::real;
+use super::app_mapping::{at_the_known_pose_of, real};
 use super::map_decks::{Pair, crash, errors, stamped, stresses};
 
 const STEEL: &str = "*MAT_3-PARAMETER_BARLAT\n         5    7.8E-9  210000.0       0.3\n";
@@ -78,6 +83,35 @@ fn a_mapping_of_nothing_writes_no_deck() {
     assert!(!pair.path("out.k").exists() && !pair.path("out_elements.k").exists());
     // The record says why.
     assert!(pair.path("out.json").exists());
+}
+
+#[test]
+fn nothing_is_exchanged_in_a_deck_that_has_changed_since_it_was_read() {
+    let (mut window, _folder) = at_the_known_pose_of(SampleVariant::Plain);
+    window.act(Action::MapOrCancel);
+    let document = &window.state.document;
+    let input = OutputInput {
+        parts: PerRole::from_fn(|role| document.part(role).map(|part| part.loaded.to_arc())),
+        mapping: Some(document.current_mapping().unwrap().run.to_arc()),
+        ..OutputInput::default()
+    };
+    let crash = document.part(Role::Crash).unwrap().loaded.path.clone();
+    let write = |kind| Output::Mapped(kind).make(&input, None, &Monitor::silent());
+    let kinds = [WriteKind::Deck, WriteKind::Part, WriteKind::Include];
+    let read = std::fs::read_to_string(&crash).unwrap();
+    std::fs::write(&crash, read.replace("*END", "$ another\n*END")).unwrap();
+    for kind in kinds {
+        let refused = write(kind).map(|file| file.bytes).unwrap_err();
+        let PipelineError::Changed(path) = &refused else {
+            panic!("{refused}");
+        };
+        assert_eq!(path, &crash);
+        assert!(refused.to_string().contains("reload"), "{refused}");
+    }
+    std::fs::write(&crash, read).unwrap();
+    for kind in kinds {
+        assert!(write(kind).is_ok());
+    }
 }
 
 #[test]

@@ -6,14 +6,15 @@ use std::path::{Path, PathBuf};
 
 use super::PipelineError;
 use super::output::{MapFile, MapWriter};
+use crate::formats::Disk;
 use crate::formats::keyword::include::SearchPath;
 use crate::formats::keyword::rename::{includes_of, rename_includes};
 use crate::formats::keyword::source_file::SourceFile;
 use crate::formats::model::ReadFile;
-use crate::formats::{self, Disk};
 use crate::monitor::Monitor;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::names::file_name;
+use crate::pipeline::read_again::ReadAgain;
 
 impl MapWriter<'_> {
     /// What an include does to a file must not be done to the states in its copy, nor to another part.
@@ -136,14 +137,14 @@ pub(super) fn lost_includes(
         copies.find(|file| file.replaces.as_deref() == Some(path))
     };
     let mut decks = Vec::with_capacity(crash.model.files.len());
-    let from = crash.file_source();
+    let again = ReadAgain::new(crash);
     for read in &crash.model.files {
         let path = copy_of(&read.path).map_or(&read.path, |copy| &copy.path);
         let includes = match of_copies.get(&read.path) {
             Some(includes) => includes.clone(),
             None => {
-                let bytes = formats::read_text(&*from, path, &crash.settings.read, monitor)?;
-                includes_of(&SourceFile::new(path, bytes), &read.included_as)
+                let bytes = again.text(read, monitor)?;
+                includes_of(&SourceFile::new(&read.path, bytes), &read.included_as)
             }
         };
         decks.push((&read.path, path, includes));

@@ -19,6 +19,7 @@ use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::names::file_name;
 use crate::pipeline::outputs::{Content, Target, overwritten_inputs};
+use crate::pipeline::read_again::ReadAgain;
 use crate::text::parts_by_id;
 
 /// Elements that get stresses, and elements that get strains, by their ids in the crash deck.
@@ -155,13 +156,12 @@ pub(super) fn copies_without_states(
     let model = &crash.model;
     let left_out = LeftOut::new(model, new);
     let mut copies: Vec<MapFile> = Vec::new();
-    let from = crash.file_source();
+    let again = ReadAgain::new(crash);
     for (index, file) in model.files.iter().enumerate() {
         if file.path == except {
             continue;
         }
-        let bytes = formats::read_text(&*from, &file.path, &crash.settings.read, monitor)?;
-        let source = SourceFile::new(&file.path, bytes);
+        let source = SourceFile::new(&file.path, again.text(file, monitor)?);
         let rules = ExchangeRules {
             included_as: file.included_as,
             list_layout: None,
@@ -277,8 +277,9 @@ pub(super) fn read_copies(
     if replaced.is_empty() {
         return Ok(None);
     }
+    let again = ReadAgain::new(crash);
     let source = Replaced {
-        others: &*crash.file_source(),
+        others: again.source(),
         files: &replaced,
     };
     let read = formats::read_from(&source, &crash.path, &crash.settings.read, monitor)?;

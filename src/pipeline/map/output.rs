@@ -7,6 +7,7 @@ use super::head::keyword_line;
 use super::includes::{include_copies, lost_includes};
 use super::old_states::{LeftOut, NewStates, copies_without_states};
 use super::{DefaultThickness, MapRun, PipelineError};
+use crate::formats::Model;
 use crate::formats::keyword::card::Layout;
 use crate::formats::keyword::exchange::{
     Exchange, ExchangeRules, ExchangedDeck, ResultCards, exchange_thickness,
@@ -14,11 +15,11 @@ use crate::formats::keyword::exchange::{
 use crate::formats::keyword::source_file::SourceFile;
 use crate::formats::keyword::state_cards::{Pieces, ShellState, StateFormat, write_states};
 use crate::formats::model::{IncludedAs, ReadFile};
-use crate::formats::{self, Model};
 use crate::geometry::chunks::for_chunks;
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::names::file_name;
+use crate::pipeline::read_again::ReadAgain;
 use crate::text::counted;
 
 /// Where strains of the two surfaces stand.
@@ -308,11 +309,9 @@ impl MapWriter<'_> {
         let left_out = LeftOut::new(self.model, new_states);
         let leaves_out: &dyn Fn(&ResultCards) -> bool = &|cards| left_out.leaves_out(cards);
         let mut decks: Vec<(&ReadFile, ExchangedDeck)> = Vec::new();
-        let from = self.crash.file_source();
+        let again = ReadAgain::new(self.crash);
         for file in &self.model.files {
-            let read = &self.crash.settings.read;
-            let bytes = formats::read_text(&*from, &file.path, read, self.monitor)?;
-            let source = SourceFile::new(&file.path, bytes);
+            let source = SourceFile::new(&file.path, again.text(file, self.monitor)?);
             // Of a copy only the file with the elements is kept.
             let states = |found: &ExchangedDeck| -> Result<Pieces, Cancelled> {
                 if kind == WriteKind::Deck && found.n_found > 0 {
