@@ -73,7 +73,7 @@ impl Assessment {
     /// The motion that leaves the pose open: one that the surfaces do not resist, and neither holes nor borders do.
     pub fn open_motion(&self) -> Option<&FreeMotion> {
         self.reasons.iter().find_map(|reason| match reason {
-            Reason::Sliding { motion } => Some(motion),
+            Reason::Sliding { motion, .. } => Some(motion),
             _ => None,
         })
     }

@@ -2,6 +2,7 @@
 //! percent longer than its counterpart fits its surface well and misses its borders.
 
 use super::border_curve::{BorderCurve, Place, along, curves_of, ragged};
+use super::free_motion::FreeMotion;
 use super::least_squares::{quantile, robust_weights};
 use super::tolerance::{ShapeTolerance, coarser_edge, is_source_smaller};
 use crate::geometry::{Aabb, Point3, Similarity, Vector3};
@@ -214,6 +215,28 @@ impl<'a> BorderComparison<'a> {
         found.compare_holes(self.surfaces, borders, pose, self.near);
         found
     }
+
+    /// Length of the smaller part's outlines across a motion, as a share of all its borders: where they run along it,
+    /// they do not resist it.
+    pub(super) fn across(&self, pose: &Similarity, motion: &FreeMotion) -> f64 {
+        let still = Similarity::identity();
+        let target_from_own = if self.of_source { pose } else { &still };
+        let across = |places: &BorderPlaces| {
+            let outlines = places.own.iter().filter(|place| !place.is_hole);
+            let across = outlines.map(|place| {
+                let place = place.moved(target_from_own);
+                across(motion, &place.point, &place.tangent.cross(&place.normal))
+            });
+            across.sum::<f64>() / places.own.len().max(1) as f64
+        };
+        self.places.as_ref().map_or(0.0, across)
+    }
+}
+
+/// How much of a motion goes across a border at a point: from 0, along it, to 1.
+fn across(motion: &FreeMotion, point: &Point3, across: &Vector3) -> f64 {
+    let way = motion.way_at(point);
+    way.map_or(0.0, |way| way.dot(across).abs())
 }
 
 impl BorderPlaces {
@@ -353,6 +376,18 @@ impl Borders {
             .zip(left)
             .filter(|(pair, left)| pair.kind != PairKind::Mixed && left.abs() <= distance);
         self.share_of(within.map(|(pair, _)| pair))
+    }
+
+    /// The same of what outlines go across a motion, as [`BorderComparison::across`].
+    pub(super) fn across_within(&self, left: &[f64], distance: f64, motion: &FreeMotion) -> f64 {
+        let across = self.pairs.iter().zip(left).filter_map(|(pair, left)| {
+            let is_held = pair.kind == PairKind::Outlines && left.abs() <= distance;
+            is_held.then(|| BorderPair {
+                weight: pair.weight * across(motion, &pair.point, &pair.across),
+                ..*pair
+            })
+        });
+        self.share_of(across.collect::<Vec<_>>().iter())
     }
 
     /// Share of the smaller part's borders that these pairs stand for.

@@ -10,7 +10,7 @@ use super::assessment::Assessment;
 use super::borders::HOLES_THAT_HOLD;
 use super::pose::{PoseKind, PoseStatement};
 use super::reason::Reason;
-use super::shape::{BorderFit, ShapeStatement, only_overhangs};
+use super::shape::{BorderFit, OVERHANGS, ShapeStatement, only_overhangs};
 use super::tolerance::{AssessSettings, ShapeTolerance, UNREMARKABLE};
 use super::verdict::Verdict;
 use crate::registration::starts::StartKind;
@@ -30,6 +30,8 @@ const SEVERAL_FROM: f64 = 2.0;
 const SEVERAL_TO: f64 = 500.0;
 /// Borders hold a part whose surface can slide if at least this share of the smaller part's lies on one of the other.
 const LEAST_TOGETHER: f64 = 1.0 / 3.0;
+/// Of outlines across the motion so much does: along it, one end of a part can always be brought together.
+const LEAST_ACROSS: f64 = 2.0 / 3.0;
 /// Parts whose sizes differ by more than this factor are not in one unit, whatever the units are.
 const FAR_APART: f64 = 50.0;
 
@@ -37,6 +39,8 @@ const FAR_APART: f64 = 50.0;
 pub(super) struct Grounds<'a> {
     pub(super) outcome: &'a MatchOutcome,
     pub(super) shape: &'a ShapeStatement,
+    /// Share of the smaller part's outlines across the free motion that lies together, if there are any.
+    pub(super) held_across: Option<f64>,
     /// The statement about the shape of the opposite hand.
     pub(super) mirrored: Option<&'a ShapeStatement>,
     /// How far the scale of the pairs may be off.
@@ -52,6 +56,7 @@ pub(super) fn decide(assessment: &mut Assessment, grounds: &Grounds<'_>) {
         mirrored,
         most_scaled,
         settings,
+        ..
     } = *grounds;
     let several = several_parts(assessment, settings.n_target_parts);
     let read = read_errors(settings);
@@ -68,7 +73,7 @@ pub(super) fn decide(assessment: &mut Assessment, grounds: &Grounds<'_>) {
     }
     let of_pose = [
         ending(outcome),
-        sliding(assessment, shape, outcome),
+        sliding(assessment, grounds),
         ambiguity(assessment),
         others_not_sought(outcome),
         uncertainty(assessment),
@@ -77,6 +82,7 @@ pub(super) fn decide(assessment: &mut Assessment, grounds: &Grounds<'_>) {
         hand(assessment, shape, mirrored),
         scale(assessment, most_scaled),
         overlap(assessment, shape),
+        elsewhere(shape),
     ];
     let found = of_pose.into_iter().chain(of_shape).chain([read]).flatten();
     let differences = shape
@@ -124,6 +130,7 @@ fn pose_kind(reasons: &[Reason]) -> PoseKind {
         | Reason::NearAlternative { .. }
         | Reason::AlikeParts { .. } => PoseKind::Ambiguous,
         Reason::Sliding { .. }
+        | Reason::Elsewhere { .. }
         | Reason::Uncertain { .. }
         | Reason::OthersNotSought
         | Reason::Stopped => PoseKind::Uncertain,
@@ -241,21 +248,38 @@ fn overlap(assessment: &Assessment, shape: &ShapeStatement) -> Option<Reason> {
     })
 }
 
+/// Parts of which the smaller one lies in places where the other is not, while it does not end there, and neither
+/// outlines nor holes show that the pose is right all the same.
+fn elsewhere(shape: &ShapeStatement) -> Option<Reason> {
+    let borders = &shape.borders;
+    let is_confirmed = borders.n_holes >= HOLES_THAT_HOLD
+        || borders.offset.is_some() && borders.other_trim.is_none();
+    let overhang = shape.overhang?;
+    let lies_elsewhere = shape.met < OVERHANGS && !only_overhangs(shape.met, overhang);
+    let is_told = shape.met < ENOUGH_MET || is_confirmed;
+    (lies_elsewhere && !is_told).then_some(Reason::Elsewhere {
+        share: 1.0 - shape.met - overhang,
+    })
+}
+
 /// A motion that the surfaces do not resist, unless holes hold the part, or borders that were compared
 /// with those of all other poses along it: the borders of a plate fit after half a turn.
-fn sliding(
-    assessment: &Assessment,
-    shape: &ShapeStatement,
-    outcome: &MatchOutcome,
-) -> Option<Reason> {
+fn sliding(assessment: &Assessment, grounds: &Grounds<'_>) -> Option<Reason> {
+    let Grounds { outcome, shape, .. } = *grounds;
     let motion = assessment.freedom.motion?;
     let is_firm = assessment.pose.as_ref().is_some_and(PoseStatement::is_firm);
     let was_searched = outcome.rivals_sought && motion.kind.is_searched();
     let is_clear = was_searched && assessment.ambiguity.clarity == Clarity::Clear;
     let borders = &shape.borders;
-    let borders_hold = is_clear && borders_lie_together(borders, &shape.tolerance);
+    let is_held_across = grounds.held_across.is_none_or(|held| held >= LEAST_ACROSS);
+    let borders_hold =
+        is_clear && is_held_across && borders_lie_together(borders, &shape.tolerance);
     let is_held = is_firm && (borders.n_holes >= HOLES_THAT_HOLD || borders_hold);
-    (!is_held).then_some(Reason::Sliding { motion })
+    let held_across = grounds.held_across.filter(|_| !is_held_across);
+    (!is_held).then_some(Reason::Sliding {
+        motion,
+        held_across,
+    })
 }
 
 /// Whether borders that lie beside each other do so where they belong, and enough of them: along a free motion some
@@ -349,6 +373,26 @@ mod tests {
         // Edges that were trimmed lie beside each other by chance, but hardly along a third of the outline.
         assert!(!holds(Some(0.9), 0.3));
         assert!(!holds(Some(1.1), 0.9) && !holds(None, 0.9));
+    }
+
+    #[test]
+    fn a_piece_that_lies_elsewhere_is_told_where_nothing_confirms_the_pose() {
+        let meets = |met, overhang, n_holes, offset| {
+            let mut shape = shape(0.1, &[]);
+            (shape.met, shape.overhang) = (met, Some(overhang));
+            shape.borders.n_holes = n_holes;
+            shape.borders.offset = offset;
+            elsewhere(&shape)
+        };
+        let Some(Reason::Elsewhere { share }) = meets(0.79, 0.15, 0, None) else {
+            panic!("nothing is told");
+        };
+        assert!((share - 0.06).abs() < 1e-9, "{share}");
+        // It ends beyond the other part, holes or outlines confirm the pose, or all of it meets.
+        assert_eq!(meets(0.79, 0.2, 0, None), None);
+        assert_eq!(meets(0.79, 0.15, 2, None), None);
+        assert_eq!(meets(0.79, 0.15, 0, Some(0.3)), None);
+        assert_eq!(meets(0.96, 0.0, 0, None), None);
     }
 
     #[test]

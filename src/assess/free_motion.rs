@@ -74,6 +74,21 @@ pub struct FreeMotion {
     pub point: Point3,
 }
 
+impl FreeMotion {
+    /// Unit direction in which the motion takes a point of the target's frame; `None` where it may take it in several,
+    /// or leaves it where it is.
+    pub(super) fn way_at(&self, point: &Point3) -> Option<Vector3> {
+        match self.kind {
+            FreeMotionKind::Extruded => Some(self.direction),
+            FreeMotionKind::Revolved => {
+                let way = self.direction.cross(&(point - self.point));
+                way.try_normalize(0.0)
+            }
+            _ => None,
+        }
+    }
+}
+
 /// How firmly the overlap holds the pose.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Freedom {

@@ -80,7 +80,11 @@ pub fn assess(
     let Distances {
         noise, tolerance, ..
     } = Distances::of(source, target, pose.scale, settings);
-    let Statements { uncertainty, shape } = statements([source, target], pose, settings);
+    let Statements {
+        uncertainty,
+        shape,
+        held_across,
+    } = statements([source, target], pose, freedom.motion.as_ref(), settings);
     monitor.check()?;
     let mut assessment = Assessment {
         verdict: Verdict::Good,
@@ -106,6 +110,7 @@ pub fn assess(
     let grounds = Grounds {
         outcome,
         shape: &shape,
+        held_across,
         mirrored: mirrored.as_ref(),
         most_scaled,
         settings,
@@ -142,7 +147,9 @@ pub fn assess_alternative(
     settings: &AssessSettings,
 ) -> AlternativeStatements {
     let tolerance = Distances::of(source, target, pose.scale, settings).tolerance;
-    let Statements { uncertainty, shape } = statements([source, target], pose, settings);
+    let Statements {
+        uncertainty, shape, ..
+    } = statements([source, target], pose, None, settings);
     AlternativeStatements {
         pose: PoseStatement {
             kind: PoseKind::Ambiguous,

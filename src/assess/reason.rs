@@ -67,10 +67,21 @@ pub enum Reason {
         #[serde(with = "any_float")]
         target: f64,
     },
+    /// A piece of the smaller part lies neither on the other part nor beyond its borders, and neither borders nor holes
+    /// confirm the pose.
+    Elsewhere {
+        /// Fraction of the smaller part's area.
+        #[serde(with = "any_float")]
+        share: f64,
+    },
     /// The surfaces slide on each other.
     Sliding {
         /// How they do.
         motion: FreeMotion,
+        /// Share of the smaller part's outlines across the motion that lies together, where it is too small to hold the
+        /// part.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        held_across: Option<f64>,
     },
     /// The pose may be off by more than the tolerance.
     Uncertain {
@@ -160,6 +171,7 @@ impl Reason {
             | Self::PairScale { .. }
             | Self::Uncertain { .. }
             | Self::BothOverhang { .. }
+            | Self::Elsewhere { .. }
             | Self::Sliding { .. }
             | Self::NearAlternative { .. }
             | Self::EqualAlternative { .. }

@@ -5,7 +5,8 @@ use super::contact::{ContactSearch, MAX_NODES};
 use super::decide::NEAR_MIRROR;
 use super::evidence::{EvidenceSearch, PoseEvidence};
 use super::fit::Fit;
-use super::shape::{ShapeStatement, TOGETHER};
+use super::free_motion::FreeMotion;
+use super::shape::{OVERHANGS, ShapeStatement, TOGETHER};
 use super::tolerance::{AssessSettings, Distances, ShapeTolerance};
 use super::trims;
 use super::uncertainty::PoseUncertainty;
@@ -16,11 +17,16 @@ use crate::registration::{MatchOutcome, Surface};
 const LEFT: f64 = 0.1;
 /// Outlines lie together if this share of those beside others does.
 const ALL_TOGETHER: f64 = 0.9;
+/// Outlines of which no more runs across a motion do not resist it.
+const LEAST_ACROSS: f64 = 0.02;
 
 /// How far the pose may be off, and whether the shapes are one.
 pub(super) struct Statements {
     pub(super) uncertainty: Option<PoseUncertainty>,
     pub(super) shape: ShapeStatement,
+    /// Share of the smaller part's outlines across the free motion that lies together; `None` without such a motion,
+    /// and where none resist it.
+    pub(super) held_across: Option<f64>,
 }
 
 /// Whether outlines are evidence of the shape.
@@ -36,13 +42,23 @@ pub(crate) enum Outlines {
 pub(super) fn statements(
     pair: [&Surface; 2],
     pose: &Similarity,
+    motion: Option<&FreeMotion>,
     settings: &AssessSettings,
 ) -> Statements {
     let compared = Compared::under(pair, pose, settings, Outlines::Compared);
-    let uncertainty = compared.met.as_ref();
+    let met = compared.met.as_ref();
+    let mut shape = compared.shape(settings);
+    if let Some(met) = met
+        && shape.met < OVERHANGS
+    {
+        shape
+            .overhang
+            .get_or_insert_with(|| met.evidence.overhang());
+    }
     Statements {
-        uncertainty: uncertainty.and_then(|met| met.uncertainty(settings, &compared.tolerance)),
-        shape: compared.shape(settings),
+        uncertainty: met.and_then(|met| met.uncertainty(settings, &compared.tolerance)),
+        shape,
+        held_across: motion.and_then(|motion| compared.held_across(pose, motion)),
     }
 }
 
@@ -71,6 +87,7 @@ pub(super) fn mirrored_statement(
 /// Both parts under a pose, and what their shapes are compared by.
 struct Compared<'a> {
     tolerance: ShapeTolerance,
+    borders: BorderComparison<'a>,
     /// `None` where their surfaces do not meet.
     met: Option<Met<'a>>,
 }
@@ -102,7 +119,18 @@ impl<'a> Compared<'a> {
         Self {
             met: met.map(|evidence| Met::of(evidence, &tolerance, outlines)),
             tolerance,
+            borders,
         }
+    }
+
+    fn held_across(&self, pose: &Similarity, motion: &FreeMotion) -> Option<f64> {
+        let all = self.borders.across(pose, motion);
+        let held = |met: &Met<'_>| {
+            let borders = &met.evidence.borders;
+            let limit = TOGETHER * borders.limit(&self.tolerance);
+            borders.across_within(&met.fit.borders, limit, motion)
+        };
+        (all > LEAST_ACROSS).then(|| self.met.as_ref().map_or(0.0, held) / all)
     }
 
     fn shape(&self, settings: &AssessSettings) -> ShapeStatement {
@@ -164,7 +192,8 @@ fn is_removed(fit: &Fit, shape: &ShapeStatement) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Point3, TriMesh};
+    use crate::assess::free_motion::FreeMotionKind;
+    use crate::geometry::{Point3, TriMesh, Vector3};
 
     /// A plate of 300 by 120 whose far edges lie so far out of there.
     fn plate(out: [f64; 2]) -> Surface {
@@ -180,6 +209,27 @@ mod tests {
         let triangles = cells.flat_map(|a| [[a, a + up, a + up + 1], [a, a + up + 1, a + 1]]);
         let mesh = TriMesh::new(points.collect(), triangles.collect()).unwrap();
         Surface::new(&mesh, "source").unwrap()
+    }
+
+    #[test]
+    fn one_end_that_lies_together_holds_half_of_what_resists_a_slide() {
+        let (whole, settings) = (plate([0.0; 2]), AssessSettings::default());
+        let pose = Similarity::identity();
+        let held = |out, direction| {
+            let along = FreeMotion {
+                kind: FreeMotionKind::Extruded,
+                direction,
+                point: Point3::origin(),
+            };
+            let longer = plate(out);
+            statements([&longer, &whole], &pose, Some(&along), &settings).held_across
+        };
+        let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
+        assert!(held([0.0; 2], x).unwrap() > 0.98);
+        let by_one_end = held([60.0, 0.0], x).unwrap();
+        assert!((0.4..0.6).contains(&by_one_end), "{by_one_end}");
+        assert!(held([60.0, 0.0], y).unwrap() > 0.9);
+        assert_eq!(held([0.0; 2], z), None);
     }
 
     #[test]

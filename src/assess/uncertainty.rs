@@ -441,7 +441,7 @@ mod tests {
 
     fn uncertainty(source: &Surface, target: &Surface, pose: &Similarity) -> PoseUncertainty {
         let settings = AssessSettings::default();
-        let found = statements([source, target], pose, &settings);
+        let found = statements([source, target], pose, None, &settings);
         found.uncertainty.unwrap()
     }
 
@@ -472,14 +472,14 @@ mod tests {
             ..AssessSettings::default()
         };
         let still = Similarity::identity();
-        let stated = statements([&flat, &flat], &still, &thick)
+        let stated = statements([&flat, &flat], &still, None, &thick)
             .uncertainty
             .unwrap();
         assert_eq!(stated.unknown_offset, 0.8);
         assert!((stated.largest - 0.8).abs() < 0.05, "{stated:?}");
         assert_eq!(stated.along, PartDirection::Through);
         let part = gutter(0.3, 0.0);
-        let curved = statements([&part, &part], &still, &thick)
+        let curved = statements([&part, &part], &still, None, &thick)
             .uncertainty
             .unwrap();
         assert_eq!(curved.unknown_offset, 0.0);

@@ -16,6 +16,8 @@ use crate::text::{Lengths, counted, fixed, parts_by_id, percent, vector};
 const NO_ROTATION: f64 = 3.0 * PI / 180.0;
 /// A direction is that of an axis if it lies within about a degree of it.
 const ALONG_AXIS: f64 = 0.9998;
+/// Shares of outlines below this one are hardly any.
+const WORTH_TELLING: f64 = 0.1;
 
 impl Verdict {
     /// The word for people: `GOOD`, `CHECK` or `POOR`.
@@ -75,7 +77,22 @@ impl Reason {
                 "neither part contains the other: {} overlap",
                 both_overlaps(*source, *target)
             ),
-            Self::Sliding { motion } => motion.words(),
+            Self::Elsewhere { share } => format!(
+                "{} of the smaller part lies neither on the other part nor beyond its borders, and neither borders nor \
+                 holes confirm the pose",
+                percent(*share)
+            ),
+            Self::Sliding {
+                motion,
+                held_across,
+            } => match held_across.filter(|held| *held >= WORTH_TELLING) {
+                Some(held) => format!(
+                    "{}, and only {} of the outlines across it lie together",
+                    motion.words(),
+                    percent(held)
+                ),
+                None => motion.words(),
+            },
             Self::Uncertain { by, limit, along } => {
                 let [by, limit] = lengths.compared([*by, *limit]);
                 let along = along.words();

@@ -33,7 +33,7 @@ const STILL: f64 = 0.02;
 const ASIDE: f64 = 2.0;
 
 /// The pose under which much more of the smaller part meets the other than under that of `outcome`, or as much where
-/// the shapes differ under that one, while nothing but springback within the tolerance keeps them apart. `None` where
+/// the shapes differ under that one, or all of it with its outlines all round, while nothing but springback within the tolerance keeps them apart. `None` where
 /// there is none, and where the parts meet as a whole without a difference. O(first poses · nodes · log triangles).
 pub fn placed_as_a_whole(
     context: &PairContext<'_>,
@@ -67,7 +67,8 @@ pub fn placed_as_a_whole(
         let explains_more = other.met > MUCH_MORE * result.met
             || result.differs() && other.meets_as_much_as(&result);
         let is_explained = result.lies_much_closer_elsewhere_than(other, distances.noise);
-        other.is_one_shape && explains_more && !is_explained
+        let is_better = explains_more && !is_explained || other.fits_all_round_beside(&result);
+        other.is_one_shape && is_better
     });
     candidates.sort_by(|a, b| a.apart().total_cmp(&b.apart()));
     let source = context.source;

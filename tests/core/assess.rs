@@ -440,7 +440,10 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
             along: PartDirection::Along,
         },
         Reason::BothOverhang { source, target },
-        Reason::Sliding { motion },
+        Reason::Sliding {
+            motion,
+            held_across: Some(0.5),
+        },
         Reason::NearAlternative {
             score_ratio: 1.2,
             twin,

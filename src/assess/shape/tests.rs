@@ -33,7 +33,7 @@ fn statement(source: &Surface, target: &Surface) -> ShapeStatement {
         thickness: Some(1.5),
         ..AssessSettings::default()
     };
-    statements([source, target], &Similarity::identity(), &settings).shape
+    statements([source, target], &Similarity::identity(), None, &settings).shape
 }
 
 /// Deflection `w` along z of up to `most`, with the shift along x that keeps lengths.
@@ -310,7 +310,9 @@ fn another_trim_all_round_is_no_other_version_where_the_surface_says_so() {
     let settings = AssessSettings::default();
     let still = Similarity::identity();
     let stated = |source: &Surface, target: &Surface| {
-        let Statements { uncertainty, shape } = statements([source, target], &still, &settings);
+        let Statements {
+            uncertainty, shape, ..
+        } = statements([source, target], &still, None, &settings);
         (uncertainty.unwrap(), shape)
     };
     // Before its last trim the part reaches 5 mm farther out all round, or on three sides.

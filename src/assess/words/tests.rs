@@ -1,7 +1,8 @@
 //! What the words of an assessment say, and what they leave out.
 
 use super::{as_well, error_beside};
-use crate::assess::Reason;
+use crate::assess::{FreeMotion, FreeMotionKind, Reason};
+use crate::geometry::{Point3, Vector3};
 use crate::text::Lengths;
 
 #[test]
@@ -36,6 +37,32 @@ fn sentences_beside_figures_leave_these_out() {
     };
     let beside = both.words_beside_figures(lengths);
     assert_eq!(beside, "neither part contains the other");
+    let sliding = |held_across| Reason::Sliding {
+        motion: FreeMotion {
+            kind: FreeMotionKind::Extruded,
+            direction: Vector3::x(),
+            point: Point3::origin(),
+        },
+        held_across,
+    };
+    let by_one_end = sliding(Some(0.5)).words(lengths);
+    assert!(
+        by_one_end.ends_with("and only 50.0 % of the outlines across it lie together"),
+        "{by_one_end}"
+    );
+    for held_across in [None, Some(0.02)] {
+        assert!(
+            sliding(held_across)
+                .words(lengths)
+                .ends_with("(1.000, 0.000, 0.000)")
+        );
+    }
+    let elsewhere = Reason::Elsewhere { share: 0.043 };
+    assert!(
+        elsewhere
+            .words(lengths)
+            .starts_with("4.3 % of the smaller part")
+    );
     assert_eq!(
         Reason::Stopped.words_beside_figures(lengths),
         Reason::Stopped.words(lengths)
