@@ -446,3 +446,39 @@ fn tick_ui(ui: &Ui, rect: Rect, row: &Row<'_>, (state, name): (&AppState, &str))
         .widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, is_free, is_used, &label));
     response.on_hover_text("Use for the match")
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::formats::Model;
+    use crate::geometry::{Point3, TriMesh};
+    use crate::jobs::{PartFacts, PartSource};
+    use crate::monitor::Monitor;
+    use crate::pipeline::load::{LoadSettings, prepare};
+
+    #[test]
+    fn a_thickness_has_its_digits_in_every_unit() {
+        let corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 3.0, 0.0]].map(Point3::from);
+        let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
+        let model = Arc::new(Model::from_mesh(&mesh, "triangle"));
+        let (path, monitor) = (Path::new("triangle.k"), Monitor::silent());
+        let loaded = prepare(path, model, &LoadSettings::default(), &monitor).unwrap();
+        let facts = PartFacts::of(&loaded, &monitor).unwrap();
+        let source = PartSource::File(path.to_path_buf());
+        let part = Part::new(Arc::new(loaded), Arc::new(facts), source, 1);
+        let row = Row {
+            role: Role::Crash,
+            part: &part,
+            summary: &part.facts.parts[0],
+            index: 0,
+            likeness: None,
+        };
+        let state = AppState::default();
+        for (thickness, text) in [(1.8, "1.80"), (0.0015, "0.00150")] {
+            assert_eq!(thickness_text(&row, &state, thickness), text);
+        }
+    }
+}
