@@ -129,7 +129,9 @@ fn mapped_and_stamped_are_wiped_and_blinked_between_where_both_show_one_quantity
         window.apply(ViewCommand::SetFreeWindow(free));
         assert!(window.state.is_mapping_apart(), "{free:?}");
     }
-    assert_ne!(window.state.free_window(), Some(FreeWindow::Stamped));
+    window.apply(ViewCommand::SetFreeWindow(FreeWindow::Section));
+    assert_eq!(window.state.free_window(), Some(FreeWindow::Section));
+    assert!(window.state.is_mapping_apart());
     window.act(Action::ToggleMoveOver);
     assert!(!window.state.is_mapping_apart());
 }
