@@ -40,7 +40,11 @@ pub(super) enum FollowUp {
     /// Crash and stamped part changed places.
     PartsSwapped,
     /// A part was read.
-    PartLoaded(Role),
+    PartLoaded {
+        role: Role,
+        /// It lies where the same file had it before.
+        is_in_place: bool,
+    },
     /// A part took another selection or unit.
     PartReselected(Role),
     /// Further stamped files are to be read again: all, or those of these files.
@@ -96,8 +100,10 @@ impl AppState {
                 return topics.project.open(&mut work, request, dialog);
             }
             FollowUp::PartsSwapped => self.see_swapped(),
-            FollowUp::PartLoaded(role) => {
-                self.with_scene(|view, scene| view.fit_after_load(role, scene));
+            FollowUp::PartLoaded { role, is_in_place } => {
+                if !is_in_place {
+                    self.with_scene(|view, scene| view.fit_after_load(role, scene));
+                }
                 self.go_on_from_load();
             }
             FollowUp::PartReselected(role) => {

@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 
 use crate::monitor::Cancelled;
+use crate::text::grouped;
 
 /// Why a registration gave no pose.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -18,8 +19,10 @@ pub enum RegistrationError {
     },
     /// Paired points need the same count on both sides.
     #[error(
-        "Umeyama pairs points in their order, but the source (stamped part) has {n_source} and the target \
-         (crash part) {n_target}; take another method for meshes that differ"
+        "Umeyama pairs points in their order, but the source (stamped part) has {} and the target \
+         (crash part) {}; take another method for meshes that differ",
+        grouped(*n_source),
+        grouped(*n_target)
     )]
     UnequalCounts {
         /// Points of the source.

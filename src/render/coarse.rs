@@ -36,10 +36,10 @@ pub(super) fn coarse(fine: &RenderMesh, input: MeshInput<'_>) -> Option<Arc<Rend
     drawn.place_about(fine);
     // Borders and creases are those of the mesh itself, element edges are left out.
     drawn.edge_corners = Vec::new();
-    drawn.wide_edges = if fine.wide_edges.len() <= MAX_LINES {
-        fine.wide_edges.clone()
+    (drawn.wide_edges, drawn.wide_ends) = if fine.wide_edges.len() <= MAX_LINES {
+        (fine.wide_edges.clone(), fine.wide_ends.clone())
     } else {
-        Vec::new()
+        (Vec::new(), Vec::new())
     };
     drawn.mean_edge_length = fine.mean_edge_length;
     drawn.source_corners = triangle_of

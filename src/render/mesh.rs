@@ -60,6 +60,8 @@ pub struct RenderMesh {
     /// Pairs of corners.
     pub(super) edge_corners: Vec<[u32; 2]>,
     pub(super) wide_edges: Vec<WideEdge>,
+    /// Where the values at the ends of each of them are found.
+    pub(super) wide_ends: Vec<[ValuePlace; 2]>,
     pub(super) nodes: Vec<Node>,
     /// Mean length of the drawn element edges; 0 without edges.
     pub(super) mean_edge_length: f64,
@@ -83,6 +85,13 @@ pub(super) struct WideEdge {
     pub(super) from: [f32; 3],
     pub(super) to: [f32; 3],
     pub(super) part: u32,
+}
+
+/// The vertex and the corner of a mesh whose values an end of an edge takes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ValuePlace {
+    pub(super) vertex: u32,
+    pub(super) corner: u32,
 }
 
 /// A mesh vertex as the graphics card reads it.
@@ -139,18 +148,26 @@ impl RenderMesh {
             })
             .collect();
         let mut wide_edges = Vec::new();
+        let mut wide_ends = Vec::new();
+        let place = |corner: u32| ValuePlace {
+            vertex: corner_vertices[corner as usize],
+            corner,
+        };
         for (edges, bit) in [(&classes.features, 0), (&classes.borders, BORDER_BIT)] {
             wide_edges.extend(edges.iter().map(|&edge| {
                 let [from, to] = topology.edges[edge].map(|v| near(&mesh.positions()[v as usize]));
                 let part = part(topology.triangles_of(edge)[0] as usize) | bit;
                 WideEdge { from, to, part }
             }));
+            let ends = mesh_build::corner_pairs(mesh, &topology, edges);
+            wide_ends.extend(ends.into_iter().map(|ends| ends.map(place)));
         }
         Self {
             origin,
             corners,
             edge_corners: mesh_build::corner_pairs(mesh, &topology, &classes.elements),
             wide_edges,
+            wide_ends,
             nodes: nodes_of(mesh, near, part),
             mean_edge_length: mesh_build::mean_length(mesh, &topology, &classes.elements),
             corner_vertices,

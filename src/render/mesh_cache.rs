@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 use wgpu::util::DeviceExt as _;
 
-use super::mesh::RenderMesh;
+use super::mesh::{RenderMesh, ValuePlace};
 use super::scene::FieldLook;
 
 /// Buffers of one mesh; `None` where there is nothing to draw.
@@ -69,19 +69,22 @@ impl GpuMesh {
     }
 }
 
-/// Values at every corner of a mesh. Larger than `NO_VALUE` of `surface.wgsl` where there is none,
+/// Values at every corner of a mesh, and behind them those at both ends of its creases and borders. Larger than `NO_VALUE` of `common.wgsl` where there is none,
 /// because shaders may assume that NaN does not happen.
-fn field_at_corners(mesh: &RenderMesh, field: &FieldLook) -> Vec<f32> {
-    let value = |(corner, &vertex): (usize, &u32)| {
-        let at = match mesh.source_corners.get(corner) {
-            _ if !field.is_by_corner => vertex as usize,
-            Some(&source) => source as usize,
-            None => corner,
-        };
-        let value = field.values.get(at).copied().unwrap_or(f32::NAN);
-        if value.is_finite() { value } else { f32::MAX }
+fn field_of(mesh: &RenderMesh, field: &FieldLook) -> Vec<f32> {
+    let value = |ValuePlace { vertex, corner }| {
+        let at = if field.is_by_corner { corner } else { vertex };
+        let value = field.values.get(at as usize).copied();
+        value.filter(|value| value.is_finite()).unwrap_or(f32::MAX)
     };
-    mesh.corner_vertices.iter().enumerate().map(value).collect()
+    let corners = mesh.corner_vertices.iter().enumerate();
+    let corners = corners.map(|(corner, &vertex)| {
+        let source = mesh.source_corners.get(corner).copied();
+        let corner = source.unwrap_or(corner as u32);
+        ValuePlace { vertex, corner }
+    });
+    let ends = mesh.wide_ends.iter().flatten().copied();
+    corners.chain(ends).map(value).collect()
 }
 
 /// An upload together with what keeps its key unique: as long as the weak reference lives, no other
@@ -168,7 +171,7 @@ impl MeshCache {
         Arc::clone(&kept.value)
     }
 
-    /// The field's values by corner; `None` without triangles.
+    /// The field's values by corner and by end of creases and borders; `None` without triangles.
     pub(super) fn field(
         &mut self,
         device: &wgpu::Device,
@@ -179,7 +182,7 @@ impl MeshCache {
         match self.fields.entry(key) {
             Entry::Occupied(kept) => Some(Arc::clone(&kept.get().value)),
             Entry::Vacant(free) => {
-                let values = field_at_corners(mesh, field);
+                let values = field_of(mesh, field);
                 let counted = Counted::new(device, &values, wgpu::BufferUsages::VERTEX)?;
                 let kept = free.insert(Kept {
                     key: Arc::downgrade(&field.values),
@@ -212,7 +215,7 @@ impl MeshCache {
         if !self.fields.contains_key(&key) && !mesh.corner_vertices.is_empty() {
             let (device, mesh, field) = (device.clone(), Arc::clone(mesh), field.clone());
             self.uploads.start(key, move || {
-                let values = field_at_corners(&mesh, &field);
+                let values = field_of(&mesh, &field);
                 let made = Counted::new(&device, &values, wgpu::BufferUsages::VERTEX);
                 Upload::Field(mesh, field.values, made.map(|made| made.buffer))
             });

@@ -139,17 +139,21 @@ pub fn few_agree_words(starts: &[StartRecord], n_same: usize) -> Option<String> 
     Some(words)
 }
 
-/// What became of a start, in words.
-pub fn outcome_words(outcome: StartOutcome) -> String {
-    match outcome {
+/// What became of a start, in words; `None` while it has not ended.
+pub fn outcome_words(start: &StartRecord) -> Option<String> {
+    Some(match start.outcome? {
         StartOutcome::Won => "best".into(),
         StartOutcome::RunnerUp => "close in the search".into(),
         StartOutcome::MergedInto { start } => format!("merged into start {}", start + 1),
-        StartOutcome::Dropped { after } => {
-            format!("stopped after {}", counted(after, "iteration"))
+        // What it made of those that it might have made: it may have come to rest before.
+        StartOutcome::Dropped { .. } => {
+            format!(
+                "stopped after {}",
+                counted(start.iterations.len(), "iteration")
+            )
         }
         StartOutcome::Failed => "no fit".into(),
-    }
+    })
 }
 
 /// A start in the record: its figures without its iterations.
@@ -199,11 +203,40 @@ pub(super) fn entries<S: Serializer>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Similarity;
+    use crate::registration::{IterationRecord, Side, Stage};
+
+    /// A start that was given up in the round that ended after 30 iterations.
+    fn dropped(n_iterations: usize) -> StartRecord {
+        let pose = Similarity::identity();
+        let iteration = IterationRecord {
+            stage: Stage::Coarse,
+            target_from_source: pose,
+            objective: 1.0,
+            rmse: 1.0,
+            fraction: 0.5,
+        };
+        StartRecord {
+            kind: StartKind::CurrentPose,
+            flipped: false,
+            mirrored: false,
+            data_side: Side::Source,
+            first: pose,
+            last: pose,
+            iterations: vec![iteration; n_iterations],
+            score: 1.0,
+            p95: 1.0,
+            took: std::time::Duration::ZERO,
+            termination: None,
+            outcome: Some(StartOutcome::Dropped { after: 30 }),
+        }
+    }
 
     #[test]
     fn one_iteration_is_no_plural() {
-        let words = |after| outcome_words(StartOutcome::Dropped { after });
+        let words = |n_iterations| outcome_words(&dropped(n_iterations)).unwrap();
         assert_eq!(words(1), "stopped after 1 iteration");
+        // As many as are counted beside it, although its round allowed for 30.
         assert_eq!(words(12), "stopped after 12 iterations");
     }
 }

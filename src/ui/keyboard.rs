@@ -24,13 +24,14 @@ const WITH_DIALOG: [Action; 9] = [
 ];
 
 /// Actions that begin the work itself or look for what is not there: where they are not possible, their keys say why.
-const SAY_WHY: [Action; 6] = [
+const SAY_WHY: [Action; 7] = [
     Action::MatchOrStop,
     Action::Refine,
     Action::MapOrCancel,
     Action::NextAlternative,
     Action::Blink,
     Action::ToggleWipe,
+    Action::ToggleGizmo,
 ];
 
 /// What the keys of a frame belong to: the topmost thing that is open.

@@ -15,6 +15,9 @@ const LABEL: f32 = 96.0;
 /// The choices, kept at once, and the button that asks where to put the picture.
 pub fn picture_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut choice = state.settings.picture;
+    // The Enter that ends a number or presses what has the keyboard is not meant for the button.
+    let is_free = ui.memory(|memory| memory.focused().is_none());
+    let is_entered = is_free && ui.input(|input| input.key_pressed(egui::Key::Enter));
     size_ui(ui, &mut choice);
     form_row(ui, "Shows", LABEL, |ui| {
         for windows in PictureWindows::ALL {
@@ -31,9 +34,9 @@ pub fn picture_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.add_space(UNIT);
     let is_taken = ui
         .horizontal(|ui| {
-            let is_taken = large_button(ui, "Save image…", true).clicked();
+            let is_clicked = large_button(ui, "Save image…", true).clicked();
             caption(ui, "F12 repeats this");
-            is_taken
+            is_clicked || is_entered
         })
         .inner;
     if is_taken {

@@ -111,12 +111,14 @@ fn bound(value: f64) -> String {
 struct Refused {
     why: String,
     at: f64,
+    /// How often fields had taken a value by then.
+    n_taken: u64,
     /// The pointer was pressed since, and what the reason lay over is seen again.
     is_read: bool,
 }
 
 /// Adds a field of a value that is read when it is left: a text that `read` refuses changes nothing and frames the
-/// field until it is edited again, the value changes, or Escape is pressed. Why it was refused is said below the field,
+/// field until it is edited again, it or another field takes a value, the value changes, or Escape is pressed. Why it was refused is said below the field,
 /// over what stands there, until the pointer is pressed, and after that where the field is pointed at.
 pub fn told_field(
     ui: &mut Ui,
@@ -137,14 +139,18 @@ pub fn told_field(
     let id = refused_id(&response);
     let known: Option<Refused> = ui.data(|data| data.get_temp(id)).flatten();
     let is_pressed = ui.input(|input| input.pointer.any_pressed());
+    let n_taken = n_taken(ui, response.changed());
     let is_over = response.has_focus()
         || response.changed()
         || ui.input(|input| input.key_pressed(egui::Key::Escape))
-        || known.as_ref().is_some_and(|known| known.at != value);
+        || known
+            .as_ref()
+            .is_some_and(|known| known.at != value || known.n_taken != n_taken);
     let now = match refused.take() {
         Some(why) => why.map(|why| Refused {
             why,
             at: value,
+            n_taken,
             is_read: false,
         }),
         None if is_over => None,
@@ -167,6 +173,16 @@ pub fn told_field(
     }
     tell(ui, &response, now.why);
     response
+}
+
+/// How often fields have taken a value, with one that does so now.
+fn n_taken(ui: &Ui, is_taken: bool) -> u64 {
+    let id = egui::Id::unique("values taken by fields");
+    ui.data_mut(|data| {
+        let n_taken: &mut u64 = data.get_temp_mut_or_default(id);
+        *n_taken += u64::from(is_taken);
+        *n_taken
+    })
 }
 
 fn refused_id(field: &Response) -> egui::Id {

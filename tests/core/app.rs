@@ -1323,6 +1323,33 @@ fn starts_are_stepped_through_without_moving_the_part() {
 }
 
 #[test]
+fn first_poses_are_those_of_the_settings() {
+    let mut window = Window::with_both();
+    window.act(Action::Align);
+    assert!(window.state.shown_start().is_some());
+    let mut recipe = window.state.document.recipe.clone();
+    recipe.settings.starts.angle_segment_deg = 20.5;
+    window.apply(MatchCommand::SetRecipe(Box::new(recipe)));
+    assert!(window.state.current_starts().is_none(), "of another step");
+    assert!(!window.state.is_preview());
+    assert!(Action::NextStart.enabled(&window.state).is_err());
+    window.apply(HistoryCommand::Undo);
+    assert_eq!(window.state.current_starts().map(<[_]>::len), Some(2));
+    assert!(!window.state.is_preview());
+}
+
+#[test]
+fn while_points_are_picked_the_key_of_the_gizmo_says_why_there_is_none() {
+    let mut window = Window::with_both();
+    window.act(Action::MeasureDistance);
+    assert!(window.state.is_picking());
+    assert!(Action::ToggleGizmo.enabled(&window.state).is_err());
+    window.act(Action::MeasureDistance);
+    window.act(Action::ToggleGizmo);
+    assert!(window.state.moving.has_gizmo);
+}
+
+#[test]
 fn the_own_window_is_fitted_to_the_part_where_it_is_while_starts_are_tried() {
     let mut window = Window::with_both();
     window.apply(ViewCommand::FitAll(Role::Stamped));
@@ -1970,6 +1997,37 @@ fn what_is_selected_goes_with_its_file() {
     window.act(Action::Undo);
     assert_eq!(window.part(Role::Crash).loaded.file_name(), "panel_crash.k");
     assert!(!is_selected(&window));
+}
+
+#[test]
+fn files_that_are_read_again_are_one_step_and_leave_the_cameras() {
+    let mut window = Window::with_both();
+    for role in Role::ALL {
+        window.state.view.cameras.get_mut(role).height *= 3.0;
+    }
+    let before = window.state.view.cameras;
+    let parts = |window: &Window| window.state.document.stamp().parts;
+    let (n_done, read_first) = (window.state.history.n_done(), parts(&window));
+    window.apply(FileCommand::ReloadAll);
+    let again = parts(&window);
+    assert!(
+        Role::ALL
+            .iter()
+            .all(|&role| again.get(role) != read_first.get(role))
+    );
+    assert_eq!(window.state.history.n_done(), n_done + 1);
+    assert_eq!(
+        window.state.history.undo_name(),
+        Some("Load both files again")
+    );
+    assert_eq!(window.state.view.cameras, before, "where the parts were");
+    window.act(Action::Undo);
+    assert_eq!(parts(&window), read_first);
+    // One alone is a step of its own, and another file is looked at.
+    window.apply(FileCommand::Reload(Role::Crash));
+    assert_eq!(window.state.history.undo_name(), Some("Load crash.k"));
+    window.open("car.k", Role::Crash);
+    assert_ne!(window.state.view.cameras.crash, before.crash);
 }
 
 #[test]

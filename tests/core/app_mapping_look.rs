@@ -2,8 +2,8 @@
 //! elements, and what is told after writing.
 
 use shapematch::app::{
-    Action, ColorBy, Effect, ExportCommand, FileCommand, HistoryCommand, LogStep, MapCommand,
-    MapPicture, Section, ViewCommand,
+    Action, ColorBy, Effect, ExportCommand, FileCommand, FreeWindow, HistoryCommand, LogStep,
+    MapCommand, MapPicture, Section, ViewCommand,
 };
 use shapematch::mapping::{MapMethod, Status};
 use shapematch::monitor::Monitor;
@@ -123,6 +123,17 @@ fn mapped_and_stamped_are_wiped_and_blinked_between_where_both_show_one_quantity
     assert!(Action::ToggleWipe.enabled(&window.state).is_err());
     window.act(Action::ToggleWipe);
     assert_eq!(window.state.view.display.wipe, Some(0.5));
+    // The stamped part would hide the colours, whatever the other window is used for.
+    window.act(Action::ToggleSection);
+    for free in FreeWindow::ALL {
+        window.apply(ViewCommand::SetFreeWindow(free));
+        assert!(window.state.is_mapping_apart(), "{free:?}");
+    }
+    window.apply(ViewCommand::SetFreeWindow(FreeWindow::Section));
+    assert_eq!(window.state.free_window(), Some(FreeWindow::Section));
+    assert!(window.state.is_mapping_apart());
+    window.act(Action::ToggleMoveOver);
+    assert!(!window.state.is_mapping_apart());
 }
 
 #[test]

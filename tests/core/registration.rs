@@ -405,6 +405,15 @@ fn umeyama_on_flat_mirrored_and_degenerate_points() {
             n_target: 4
         })
     );
+    let error = RegistrationError::UnequalCounts {
+        n_source: 12_432,
+        n_target: 6_038,
+    };
+    let told = error.to_string();
+    assert!(
+        told.contains("has 12,432 and the target (crash part) 6,038;"),
+        "{told}"
+    );
 }
 
 #[test]

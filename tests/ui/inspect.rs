@@ -8,6 +8,7 @@ use shapematch::app::{
     Action, Axis, AxisFrame, BottomTab, ColorBy, FreeWindow, Freshness, InspectCommand,
     MoveCommand, PictureChoice, ViewCommand, ViewRoom,
 };
+use shapematch::colormap::{ColorMap, ColorScale};
 use shapematch::geometry::Vector3;
 use shapematch::role::Role;
 use shapematch::ui::Shell;
@@ -151,6 +152,19 @@ fn unfolded(by: ColorBy) -> Harness<'static, Desk> {
     harness
 }
 
+/// True if what lies beyond the limits of a map is not drawn.
+fn hides(harness: &Harness<'_, Desk>, by: ColorBy) -> bool {
+    let state = &harness.state().state;
+    let display = &state.view.display;
+    let scale = match by {
+        ColorBy::Deviation => display
+            .coloring
+            .deviation_scale(state.comparison().unwrap()),
+        _ => display.limited(by, ColorScale::new(ColorMap::Viridis, 0.0, 1.0)),
+    };
+    scale.hides_beyond
+}
+
 #[test]
 fn what_lies_beyond_the_limits_is_hidden_where_they_are_set() {
     for by in [ColorBy::Deviation, ColorBy::Thickness] {
@@ -161,6 +175,8 @@ fn what_lies_beyond_the_limits_is_hidden_where_they_are_set() {
         harness.get_by_label(name).click_accesskit();
         harness.run_steps(2);
         assert!(display(&harness).coloring.hides_beyond);
+        // Automatic limits leave out the largest values, which are to be seen.
+        assert!(!hides(&harness, by), "{by:?}");
         let grip = harness.get_by_label("Upper limit of the colours (stamped)");
         let from = grip.rect().center();
         let to = from + vec2(0.0, 30.0);
@@ -169,6 +185,8 @@ fn what_lies_beyond_the_limits_is_hidden_where_they_are_set() {
         let is_of_deviation = by == ColorBy::Deviation;
         assert_eq!(after.coloring.limits.is_some(), is_of_deviation);
         assert_eq!(after.limits.contains_key(&by), !is_of_deviation);
+        // Limits of one map hide nothing in another.
+        assert!(hides(&harness, by) && !hides(&harness, ColorBy::Uncertainty));
         // A project keeps both.
         let text = serde_json::to_string(&after).unwrap();
         let back: shapematch::app::Display = serde_json::from_str(&text).unwrap();

@@ -8,7 +8,9 @@ use shapematch::registration::Method;
 use shapematch::role::Role;
 use shapematch::settings::Choice as _;
 use shapematch::ui::Shell;
+use shapematch::ui::theme::Palette;
 
+use super::mapping::is_ringed;
 use super::pairs::click_in;
 use super::story::{click, finish, window};
 
@@ -398,6 +400,15 @@ fn the_ring_follows_the_keyboard_and_not_the_pointer() {
     assert!(is_framed(&window, window.get_by_label("3 Match").rect()));
     click_in(&mut window, Role::Crash, egui::vec2(90.0, 60.0));
     assert!(!ring(&window), "what is pressed is not");
+}
+
+#[test]
+fn the_search_is_ringed_like_the_other_buttons_of_the_bar() {
+    let mut window = window();
+    let ring = Palette::of_visuals(&window.ctx.global_style().visuals).accent_text;
+    tab_to(&mut window, "Search commands");
+    let rect = window.get_by_label("Search commands").rect();
+    assert!(is_ringed(&window, rect, ring));
 }
 
 #[test]

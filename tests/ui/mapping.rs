@@ -523,6 +523,24 @@ fn any_shape(shape: &egui::Shape, is_it: &dyn Fn(&egui::Shape) -> bool) -> bool 
     }
 }
 
+/// True if a line of a colour lies around a place.
+pub(super) fn is_ringed<S>(
+    window: &Harness<'static, S>,
+    place: egui::Rect,
+    color: egui::Color32,
+) -> bool {
+    let is_ring = |shape: &egui::Shape| match shape {
+        egui::Shape::Rect(drawn) => {
+            let corners = [drawn.rect.min - place.min, drawn.rect.max - place.max];
+            let is_there = corners.iter().all(|corner| corner.length() < 1.0);
+            is_there && drawn.stroke.color == color && drawn.stroke.width > 1.2
+        }
+        _ => false,
+    };
+    let shapes = &window.output().shapes;
+    shapes.iter().any(|one| any_shape(&one.shape, &is_ring))
+}
+
 /// True if a rectangle in the one accent lies around the middle of a button.
 fn is_primary(window: &Harness<'static, Shell>, button: &str) -> bool {
     let middle = window.get_by_label(button).rect().center();

@@ -77,6 +77,31 @@ fn legends_have_the_unit_of_their_numbers() {
 }
 
 #[test]
+fn the_title_of_an_open_legend_lies_beside_its_buttons() {
+    let mut window = mapped();
+    click(&mut window, "Difference");
+    finish(&mut window);
+    let unfold = "Unfold the legend (crash)";
+    let begin = std::time::Instant::now();
+    while window.query_by_label(unfold).is_none() && begin.elapsed().as_secs() < 60 {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        window.run_steps(1);
+    }
+    click(&mut window, unfold);
+    window.run_steps(4);
+    let title = window.get_by(|node| {
+        let text = node.value();
+        text.is_some_and(|text| text.starts_with("Difference of thickness"))
+    });
+    let title = title.rect();
+    let whole = window.get_by_label("Fold the legend (crash)").rect();
+    let button = window.get_by_label("Colour map (crash)").rect();
+    assert!(title.right() <= button.left(), "{title} {button}");
+    assert!(title.height() > button.height(), "in several lines");
+    assert!(button.right() <= whole.left() && button.top() == whole.top());
+}
+
+#[test]
 fn checks_are_read_whole_and_a_comparison_leaves_the_pane_as_it_is() {
     let mut window = mapped();
     for name in [

@@ -462,6 +462,52 @@ fn values_beyond_the_limits_are_neither_drawn_nor_picked() {
     assert_eq!(covered(cut, &[f32::NAN; 4]), [true; 7]);
 }
 
+/// The same field: lines of the mesh end where the surface does.
+#[test]
+fn lines_of_what_is_hidden_are_not_drawn() {
+    let scale = ColorScale {
+        hides_beyond: true,
+        ..ColorScale::new(ColorMap::Rainbow, 0.25, 0.75)
+    };
+    let camera = from(StandardView::Top, Point3::origin());
+    let shown = |style: Style, values: &[f32], is_by_corner: bool| {
+        let mut drawable = plain(&square(Point3::origin()), BLUE);
+        drawable.style = Style {
+            back_hatch: false,
+            ..style
+        };
+        drawable.field = Some(FieldLook {
+            values: values.into(),
+            is_by_corner,
+            scale,
+        });
+        let shot = picture(&scene(vec![drawable]), &camera);
+        // Where anything is drawn in the upper half, at some places from left to right.
+        [-0.9, -0.6, -0.4, 0.4, 0.6, 0.9].map(|x| {
+            let at = camera.project(&Point3::new(x, 0.0, 0.0), ScreenSize::new(SIZE[0], SIZE[1]));
+            let column = at.unwrap().x as u32;
+            (0..SIZE[1] / 2).any(|row| shot.get_pixel(column, row).0[3] > 0)
+        })
+    };
+    let lines = |element_edges: bool, borders: bool| Style {
+        element_edges,
+        borders,
+        feature_edges: borders,
+        ..Style::default()
+    };
+    for style in [lines(true, false), lines(false, true), lines(true, true)] {
+        let middle = [false, false, true, true, false, false];
+        assert_eq!(shown(style, &[0.0, 1.0, 1.0, 0.0], false), middle);
+        assert_eq!(shown(style, &[0.5; 4], false), [true; 6]);
+        // Of two triangles with a value each, the one that is beyond is gone with its borders.
+        let mut by_corner = [0.5; 6];
+        by_corner[3..].fill(0.9);
+        let right = [false, false, false, true, true, true];
+        assert_eq!(shown(style, &by_corner, true), right);
+        assert_eq!(shown(style, &[0.9; 6], true), [false; 6]);
+    }
+}
+
 #[test]
 fn picking_names_the_triangle_in_front() {
     let size = SIZE;

@@ -8,7 +8,9 @@ use shapematch::registration::{Floor, MatchSettings, Method, Selection};
 use shapematch::role::Role;
 use shapematch::settings::{Domain, MAP_SETTINGS, MatchRecipe, SETTINGS, Setting, Unit};
 use shapematch::ui::Shell;
+use shapematch::ui::theme::Palette;
 
+use super::mapping::is_ringed;
 use super::story::{click, finish, matched, window};
 
 type Window = Harness<'static, Shell>;
@@ -241,6 +243,7 @@ fn a_tolerance_that_is_none_is_refused_beside_the_verdict() {
 #[test]
 fn a_refusal_goes_when_the_field_is_edited_or_its_value_changes() {
     let mut window = matched();
+    window.set_size(egui::vec2(1400.0, 1400.0));
     click(&mut window, "2 Reduce");
     window.run_steps(4);
     let why = "“a few” is not a whole number.";
@@ -250,6 +253,17 @@ fn a_refusal_goes_when_the_field_is_edited_or_its_value_changes() {
         assert!(is_told(window));
     };
     let role = egui::accesskit::Role::SpinButton;
+    refuse(&mut window);
+    let is_framed = |window: &Window| {
+        let poor = Palette::of_visuals(&window.ctx.global_style().visuals).poor;
+        let field = window.get_by_role_and_label(role, "Max triangles");
+        is_ringed(window, field.rect(), poor)
+    };
+    assert!(is_framed(&window));
+    type_into(&mut window, "Shape tolerance", "0.7");
+    finish(&mut window);
+    assert!(!is_framed(&window), "another field took a value");
+
     refuse(&mut window);
     window.get_by_role_and_label(role, "Max triangles").click();
     window.run_steps(2);

@@ -6,7 +6,7 @@ use super::row::some;
 use super::{Action, ActionRow, Key, Keys, MenuGroup, Shortcut};
 use crate::app::{
     AppState, Axis, AxisFrame, Command, HistoryCommand, MotionKind, MoveCommand, PairCommand,
-    PartCommand,
+    PartCommand, Reason,
 };
 use crate::geometry::Similarity;
 
@@ -107,7 +107,7 @@ const TOOLS: &[ActionRow] = &[
         label: "Gizmo",
         tooltip: "Show handles that move and rotate the stamped part",
         keys: Keys::press(&[shift('G')]),
-        enabled: always,
+        enabled: can_show_gizmo,
         command: |_| some(MoveCommand::ToggleGizmo),
     },
     ActionRow {
@@ -174,6 +174,14 @@ const POSE: &[ActionRow] = &[
         command: |_| some(MoveCommand::Reset),
     },
 ];
+
+/// While points are picked a click on a handle is meant for the part below it, so there are none.
+fn can_show_gizmo(state: &AppState) -> Result<(), Reason> {
+    require(
+        !state.is_picking(),
+        "Clicks pick points now, so the gizmo is hidden: Esc ends that.",
+    )
+}
 
 fn begin(state: &AppState, kind: MotionKind) -> Option<Command> {
     let frame = state.move_frame()?;

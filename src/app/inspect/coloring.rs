@@ -27,7 +27,8 @@ pub struct Coloring {
     pub limits: Option<[f64; 2]>,
     /// Half width of the neutral band; `None` follows the values.
     pub tolerance: Option<f64>,
-    /// What lies beyond the limits of any map of values is not drawn.
+    /// What lies beyond the limits of a map is not drawn, where they were set by hand: those that follow the values
+    /// leave out the largest of them, which are looked for.
     pub hides_beyond: bool,
 }
 
@@ -99,7 +100,7 @@ impl Coloring {
             n_bands: self.n_bands,
             reversed: self.is_reversed,
             has_pattern: self.has_pattern,
-            hides_beyond: self.hides_beyond,
+            hides_beyond: self.hides_beyond && self.limits.is_some(),
             ..ColorScale::new(if is_signed { self.signed_map } else { self.map }, min, max)
         }
     }

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::MapResult;
-use crate::app::{AppState, ColorBy, Display, FreeWindow};
+use crate::app::{AppState, ColorBy, Display};
 use crate::mapping::{Facing, Status};
 use crate::pipeline::forming_values::{FormingValue, LayerChoice};
 use crate::pipeline::map::{CheckPicture, ShownValue};
@@ -159,10 +159,10 @@ impl AppState {
             && (by.map_picture().is_some() || self.mapped_for(by).is_some())
     }
 
-    /// True if the left window shows the mapped crash part alone and the right one the stamped part at
-    /// its pose.
+    /// True if the left window shows the mapped crash part alone, whatever the right one is used for: the stamped
+    /// part would hide its colours.
     pub fn is_mapping_apart(&self) -> bool {
-        self.free_window() == Some(FreeWindow::Stamped)
+        self.view.is_moved_over && self.is_mapping_shown()
     }
 
     /// True if both sides of the mapping show one quantity, so that they can be wiped and blinked between in

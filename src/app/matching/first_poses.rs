@@ -83,7 +83,8 @@ impl MatchState {
         let n_poses = poses.len();
         let text = facts::counted(n_poses, "start pose");
         work.log_step(LogStep::Align, None, text, Some(took));
-        self.starts = Some(OfParts::new(work.document, poses.into()));
+        let made_with = work.document.recipe.settings.starts.clone();
+        self.starts = Some(OfParts::new(work.document, (made_with, poses.into())));
         work.previews.start = (n_poses > 0).then_some(0);
     }
 }

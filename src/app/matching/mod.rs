@@ -20,8 +20,8 @@ use super::work::Work;
 use super::{AppState, Document, Effect, OfParts, Reason, Shared};
 use crate::jobs::{Live, Measurement, Stamp, SweepRows};
 use crate::pipeline::sweep::Sweep;
-use crate::registration::Method;
 use crate::registration::starts::Start;
+use crate::registration::{Method, StartSettings};
 
 /// A match that gave no pose.
 #[derive(Debug, Clone)]
@@ -35,8 +35,8 @@ struct Failure {
 /// What alignment, match, measurement and sweep gave, beside the result in the document.
 #[derive(Debug, Clone, Default)]
 pub struct MatchState {
-    /// The first poses of the last alignment.
-    starts: Option<OfParts<Shared<Vec<Start>>>>,
+    /// The first poses of the last alignment, with the settings they were made with.
+    starts: Option<OfParts<(StartSettings, Shared<Vec<Start>>)>>,
     /// The starts of the running match, or of the last one if it gave no result.
     live_starts: OfParts<LiveStarts>,
     /// Why the last match gave no result.

@@ -17,6 +17,9 @@ impl MatchState {
             let name = "Match settings";
             let gesture = work.history.series(name);
             work.commit_in(name, Some(gesture), |d| d.recipe = recipe);
+            if self.starts_of(work.document).is_none() {
+                work.previews.start = None;
+            }
         }
     }
 

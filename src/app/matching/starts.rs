@@ -6,7 +6,7 @@ use crate::app::{AppState, Document, Shared, facts};
 use crate::geometry::{Point3, Similarity};
 use crate::jobs::{JobKey, LiveIteration};
 use crate::registration::starts::Start;
-use crate::registration::{Extent, StartRecord};
+use crate::registration::{Extent, StartRecord, StartSettings};
 use crate::role::Role;
 
 /// The starts of the running match so far, or of the last one if it was cancelled or failed.
@@ -44,9 +44,12 @@ impl LiveStarts {
 }
 
 impl MatchState {
-    /// The first poses, in the order they are stepped through, if they belong to the parts that are loaded.
+    /// The first poses, in the order they are stepped through, if they belong to the parts that are loaded and to the
+    /// settings.
     pub(in crate::app) fn starts_of(&self, document: &Document) -> Option<&Shared<Vec<Start>>> {
-        self.starts.as_ref()?.current(document)
+        let (made_with, starts) = self.starts.as_ref()?.current(document)?;
+        let turns = |starts: &StartSettings| (starts.angle_segment_deg, starts.both_signs);
+        (turns(made_with) == turns(&document.recipe.settings.starts)).then_some(starts)
     }
 
     fn live_starts(&self, document: &Document) -> &[StartRecord] {

@@ -58,10 +58,7 @@ impl PartsState {
             FileCommand::Reload(role) => self.reload(work, role),
             FileCommand::ReloadAll => {
                 work.follow(FollowUp::ReadFurtherAgain(None));
-                Role::ALL
-                    .into_iter()
-                    .flat_map(|role| self.reload(work, role))
-                    .collect()
+                self.reload_together(work, &Role::ALL)
             }
             FileCommand::ReloadChanged => {
                 let changed = Role::ALL
@@ -70,8 +67,7 @@ impl PartsState {
                 let changed: Vec<Role> = changed.collect();
                 let files = self.changed_on_disk.clone();
                 work.follow(FollowUp::ReadFurtherAgain(Some(files)));
-                let reloads = changed.into_iter();
-                reloads.flat_map(|role| self.reload(work, role)).collect()
+                self.reload_together(work, &changed)
             }
             FileCommand::ChangedOnDisk(_) => Vec::new(),
             FileCommand::Close(role) => self.close(work, role),
@@ -161,6 +157,7 @@ impl PartsState {
         source: PartSource,
         settings: LoadSettings,
     ) -> Vec<Effect> {
+        self.again_gesture = None;
         let mut effects = Vec::new();
         for key in [JobKey::Load(role), JobKey::Reselect(role)] {
             if work.jobs.is_active(key) {
@@ -185,6 +182,14 @@ impl PartsState {
         settings.read = settings.read.with_limit(limit);
         self.guess = Guess::default();
         self.load(work, role, source, settings)
+    }
+
+    /// Reads files again as one undo step.
+    fn reload_together(&mut self, work: &mut Work<'_>, roles: &[Role]) -> Vec<Effect> {
+        let roles = roles.iter();
+        let effects = roles.flat_map(|&role| self.reload(work, role)).collect();
+        self.again_gesture = Some(work.history.next_gesture());
+        effects
     }
 
     fn close(&mut self, work: &mut Work<'_>, role: Role) -> Vec<Effect> {
@@ -357,8 +362,10 @@ impl PartsState {
         work.settings.remember(&source, now);
         let part = self.with_remembered_units(work, part);
         let before = work.document.part(role);
-        let is_again = before.is_some_and(|before| before.source == source);
+        let before = before.filter(|before| before.source == source);
+        let (is_again, lay) = (before.is_some(), before.map(Part::bounds));
         self.place(work, role, source, part, facts);
+        let is_in_place = is_again && work.document.part(role).map(Part::bounds) == lay;
         if is_guess {
             self.guess.n_pending -= 1;
             if self.guess.n_pending == 0 {
@@ -366,7 +373,7 @@ impl PartsState {
             }
         }
         remember_roles(work);
-        work.follow(FollowUp::PartLoaded(role));
+        work.follow(FollowUp::PartLoaded { role, is_in_place });
         self.refresh_likeness(work.document);
         let mut effects = vec![Effect::SaveSettings];
         effects.extend(self.settle_length_factor(work));
@@ -397,20 +404,26 @@ impl PartsState {
         part: Arc<LoadedPart>,
         facts: Arc<PartFacts>,
     ) {
-        let name = format!("Load {}", part.file_name());
+        let file = part.file_name();
         self.was_read_again(work, &part.files());
         let (revision, pose_revision) =
             (work.history.next_revision(), work.history.next_revision());
         work.previews.drop_all();
         let mut n_dropped = None;
         let had_result = work.document.result.is_some();
-        let file = part.file_name();
         let old = work.document.part(role);
-        if old.is_none_or(|old| old.source != source) {
+        let is_again = old.is_some_and(|old| old.source == source);
+        if !is_again {
             // Another deck may have a part of the same number.
             self.selected.retain(|part| part.role != role);
         }
-        work.commit(name, |document| {
+        let gesture = self.again_gesture.filter(|_| is_again);
+        let name = if gesture.is_some_and(|gesture| work.history.is_open(gesture)) {
+            "Load both files again".to_owned()
+        } else {
+            format!("Load {file}")
+        };
+        work.commit_in(name, gesture, |document| {
             let old = document.parts.get_mut(role);
             let same = old.take().filter(|old| old.source == source);
             let mut new = Part::new(part, facts, source, revision);

@@ -357,7 +357,7 @@ impl Display {
         ColorScale {
             min,
             max,
-            hides_beyond: self.coloring.hides_beyond,
+            hides_beyond: self.coloring.hides_beyond && limits.is_some(),
             ..scale
         }
     }

@@ -170,7 +170,7 @@ pub(super) fn checks_of(
                     // What the crash elements are too large for comes back smoothed, however it is
                     // mapped, so this is no verdict.
                     found: percent(p95 / range),
-                    limit: "of the range, p95".to_owned(),
+                    limit: "of the range, P95".to_owned(),
                     is_met: None,
                     reason: None,
                     picture,

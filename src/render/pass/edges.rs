@@ -1,6 +1,6 @@
 //! Element edges, borders and creases.
 
-use super::surface::CORNER_LAYOUT;
+use super::surface::{CORNER_LAYOUT, FIELD_LAYOUT};
 use crate::render::mesh::WideEdge;
 use crate::render::pipeline::{Depth, Layouts, OVER, PipelineSpec, shader};
 use crate::render::prepare::PreparedDrawable;
@@ -19,6 +19,13 @@ const WIDE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout 
     attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32],
 };
 
+/// Values at both ends.
+const WIDE_FIELD_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: 8,
+    step_mode: wgpu::VertexStepMode::Instance,
+    attributes: &wgpu::vertex_attr_array![3 => Float32x2],
+};
+
 impl Edges {
     pub(super) fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
         let shader = shader(device, "edges", include_str!("../shaders/edges.wgsl"));
@@ -32,14 +39,14 @@ impl Edges {
         let thin = PipelineSpec {
             vertex: "vs_thin",
             fragment: "fs_thin",
-            buffers: &[Some(CORNER_LAYOUT)],
+            buffers: &[Some(CORNER_LAYOUT), Some(FIELD_LAYOUT)],
             topology: wgpu::PrimitiveTopology::LineList,
             ..spec()
         };
         let wide = PipelineSpec {
             vertex: "vs_wide",
             fragment: "fs_wide",
-            buffers: &[Some(WIDE_LAYOUT)],
+            buffers: &[Some(WIDE_LAYOUT), Some(WIDE_FIELD_LAYOUT)],
             ..spec()
         };
         Self {
@@ -63,6 +70,9 @@ impl Edges {
             if !lines.is_empty() {
                 pass.set_pipeline(&self.thin);
                 pass.set_vertex_buffer(0, corners.buffer.slice(..));
+                // Without a field the shader reads no values, but the slot wants a buffer that is long enough.
+                let field = drawable.field.as_deref().unwrap_or(&corners.buffer);
+                pass.set_vertex_buffer(1, field.slice(..));
                 pass.set_index_buffer(edges.buffer.slice(..), wgpu::IndexFormat::Uint32);
                 pass.draw_indexed(2 * lines.start..2 * lines.end, 0, 0..1);
             }
@@ -83,6 +93,12 @@ impl Edges {
             if !lines.is_empty() {
                 pass.set_pipeline(&self.wide);
                 pass.set_vertex_buffer(0, wide.buffer.slice(..));
+                // Behind the values at the corners lie those at the ends of these lines.
+                let n_corners = mesh.corners.as_ref().map_or(0, |corners| corners.count);
+                let behind = size_of::<f32>() as u64 * u64::from(n_corners);
+                let field = drawable.field.as_deref();
+                let field = field.map_or(wide.buffer.slice(..), |field| field.slice(behind..));
+                pass.set_vertex_buffer(1, field);
                 pass.draw(0..6, first + lines.start..first + lines.end);
             }
         }

@@ -54,6 +54,11 @@ const SECOND_SHEET: u32 = 1024u;
 const BARE: u32 = 2048u;
 const HIDES_BEYOND: u32 = 4096u;
 
+// Larger field values mean that there is none.
+const NO_VALUE: f32 = 1e37;
+// Values are beyond the ends of the table from here on, as a share of it: the ends themselves are not.
+const BEYOND: f32 = 1e-5;
+
 // Bits of a part's look in the parts table.
 const PART_VISIBLE: u32 = 1u;
 const PART_SELECTED: u32 = 2u;
@@ -133,6 +138,20 @@ fn removed(p: vec3<f32>, pixel: vec2<f32>) -> bool {
         if has(WIPE_RIGHT) && x < frame.switches.y {
             return true;
         }
+    }
+    return false;
+}
+
+// A field value and 1 where there is one.
+fn known_value(field: f32) -> vec2<f32> {
+    return select(vec2<f32>(0.0), vec2<f32>(field, 1.0), abs(field) < NO_VALUE);
+}
+
+// True if the value of a fragment lies beyond limits outside of which nothing is drawn.
+fn beyond_limits(field: vec2<f32>) -> bool {
+    if has(HIDES_BEYOND) && field.y > 0.5 {
+        let t = (field.x / field.y - drawable.params.x) * drawable.params.y;
+        return abs(t - 0.5) > 0.5 + BEYOND;
     }
     return false;
 }

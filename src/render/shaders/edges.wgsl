@@ -3,6 +3,8 @@
 struct Varyings {
     @builtin(position) clip: vec4<f32>,
     @location(0) view: vec3<f32>,
+    // Field value and 1 where there is one.
+    @location(1) field: vec2<f32>,
 }
 
 @vertex
@@ -10,6 +12,7 @@ fn vs_thin(
     @location(0) position: vec3<f32>,
     @location(1) normal: vec2<f32>,
     @location(2) part: u32,
+    @location(3) field: f32,
 ) -> Varyings {
     var out: Varyings;
     if (part_look(part).w & PART_VISIBLE) == 0u {
@@ -18,12 +21,13 @@ fn vs_thin(
     }
     out.view = view_point(position);
     out.clip = to_clip(pulled(out.view, 0.6 - drawable.params.z));
+    out.field = known_value(field);
     return out;
 }
 
 @fragment
 fn fs_thin(in: Varyings) -> @location(0) vec4<f32> {
-    if removed(in.view, in.clip.xy) {
+    if beyond_limits(in.field) || removed(in.view, in.clip.xy) {
         discard;
     }
     let color = select(frame.edge_color, vec4<f32>(drawable.color.rgb, 1.0), has(BARE));
@@ -36,6 +40,7 @@ struct WideVaryings {
     @location(1) place: vec2<f32>,
     @location(2) @interpolate(flat) shape: vec2<f32>,
     @location(3) @interpolate(flat) color: vec4<f32>,
+    @location(4) field: vec2<f32>,
 }
 
 const BORDER_BIT: u32 = 0x80000000u;
@@ -45,6 +50,7 @@ fn vs_wide(
     @location(0) from_position: vec3<f32>,
     @location(1) to_position: vec3<f32>,
     @location(2) part: u32,
+    @location(3) fields: vec2<f32>,
     @builtin(vertex_index) corner: u32,
 ) -> WideVaryings {
     var out: WideVaryings;
@@ -60,7 +66,9 @@ fn vs_wide(
     let segment = segment_corner(
         pulled(from_view, pull), pulled(to_view, pull), vec2<f32>(width), corner);
     out.clip = segment.clip;
-    out.view = select(from_view, to_view, corner == 1u || corner == 2u || corner == 4u);
+    let at_end = corner == 1u || corner == 2u || corner == 4u;
+    out.view = select(from_view, to_view, at_end);
+    out.field = known_value(select(fields.x, fields.y, at_end));
     out.place = segment.place;
     out.shape = vec2<f32>(segment.length, segment.half_width);
     // Of a clear part its lines are what is seen best, so they carry its colour.
@@ -73,7 +81,7 @@ fn vs_wide(
 
 @fragment
 fn fs_wide(in: WideVaryings) -> @location(0) vec4<f32> {
-    if removed(in.view, in.clip.xy) {
+    if beyond_limits(in.field) || removed(in.view, in.clip.xy) {
         discard;
     }
     let coverage = segment_coverage(in.place, in.shape.x, in.shape.y);

@@ -9,11 +9,7 @@ struct Varyings {
     @location(4) @interpolate(flat) ids: vec2<u32>,
 }
 
-// Larger field values mean that there is none.
-const NO_VALUE: f32 = 1e37;
 const FIELD_STEPS: f32 = 1024.0;
-// Values are beyond the ends of the table from here on, as a share of it: the ends themselves are not.
-const BEYOND: f32 = 1e-5;
 
 fn octahedral(e: vec2<f32>) -> vec3<f32> {
     var n = vec3<f32>(e, 1.0 - abs(e.x) - abs(e.y));
@@ -34,8 +30,7 @@ fn transformed(position: vec3<f32>, normal: vec2<f32>, part: u32, field: f32, in
     out.clip = to_clip(pulled(out.view, -drawable.params.z));
     let turned = (drawable.view_from_mesh * vec4<f32>(octahedral(normal), 0.0)).xyz;
     out.normal = normalize(turned);
-    let known = abs(field) < NO_VALUE;
-    out.field = select(vec2<f32>(0.0), vec2<f32>(field, 1.0), known);
+    out.field = known_value(field);
     let own = vec3<f32>(look.rgb) / 255.0;
     out.color = select(drawable.color.rgb, own, (look.w & PART_COLORED) != 0u);
     out.ids = vec2<u32>(look.w, index / 3u);
@@ -189,13 +184,7 @@ fn shaded(in: Varyings, front: bool) -> vec3<f32> {
 
 // True if this fragment is not to be seen: its value lies beyond the limits, or it was removed.
 fn hidden(in: Varyings) -> bool {
-    if has(HIDES_BEYOND) && in.field.y > 0.5 {
-        let t = (in.field.x / in.field.y - drawable.params.x) * drawable.params.y;
-        if abs(t - 0.5) > 0.5 + BEYOND {
-            return true;
-        }
-    }
-    return removed(in.view, in.clip.xy);
+    return beyond_limits(in.field) || removed(in.view, in.clip.xy);
 }
 
 @fragment

@@ -141,8 +141,7 @@ impl Report<'_> {
             cell(best.iterations.len().to_string()),
             bare(apart),
             cell(format!("{}°", fixed(angle, 1))),
-            best.outcome
-                .map_or_else(unknown, |it| cell(outcome_words(it))),
+            outcome_words(best).map_or_else(unknown, cell),
         ]
     }
 

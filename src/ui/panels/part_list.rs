@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::{Align, Layout, ScrollArea, TextStyle, Ui, vec2};
 
-use super::part_row::{Columns, Row, count_text, row_ui};
+use super::part_row::{Columns, Row, count_text, row_ui, thickness_text};
 use crate::app::filter::PartFilter;
 use crate::app::{AppState, ColorBy, Command, LikeWhat, PartCommand, PartRef};
 use crate::role::{PerRole, Role};
@@ -232,7 +232,13 @@ fn columns(ui: &Ui, state: &AppState, listed: &Listed) -> Columns {
             .x
     };
     let id = width(largest(&|row| row.summary.id.to_string().len()), body);
-    let count = width(largest(&|row| count_text(row, state).len()), small).max(30.0);
+    let count = largest(&|row| count_text(row, state).len());
+    let count = width(count, small.clone()).max(30.0);
+    let thickness = |row: &Row<'_>| {
+        let thickness = row.summary.thickness?;
+        Some(thickness_text(row, state, thickness).len())
+    };
+    let thickness = width(largest(&|row| thickness(row).unwrap_or(0)), small).max(30.0);
     let room = ui.available_rect_before_wrap();
     // The scroll bar of a long list floats over the edge of the ticks otherwise.
     let bar = if listed.len() > MAX_ROWS as usize {
@@ -246,7 +252,7 @@ fn columns(ui: &Ui, state: &AppState, listed: &Listed) -> Columns {
         .any(|part| !part.colors.is_empty());
     let is_by_part = state.view.display.color_by == ColorBy::Part;
     let ends = [room.left(), room.right() - bar];
-    Columns::new(ends, [id, count], has_colors || is_by_part)
+    Columns::new(ends, [id, count, thickness], has_colors || is_by_part)
 }
 
 fn tell_hovered(ui: &Ui, state: &AppState, hovered: Option<PartRef>, commands: &mut Vec<Command>) {

@@ -81,9 +81,13 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// Columns between two edges; `id` and `count` are the widths of their longest texts. Colours have
+    /// Columns between two edges; `id`, `count` and `thickness` are the widths of their longest texts. Colours have
     /// a column only where they say more than the mark of the role.
-    pub fn new([left, right]: [f32; 2], [id, count]: [f32; 2], has_colors: bool) -> Self {
+    pub fn new(
+        [left, right]: [f32; 2],
+        [id, count, thickness]: [f32; 3],
+        has_colors: bool,
+    ) -> Self {
         let from = |start: f32, width: f32| Rangef::new(start, start + width);
         let to = |end: f32, width: f32| Rangef::new(end - width, end);
         let eye = from(left, 22.0);
@@ -96,7 +100,7 @@ impl Columns {
         let id = from(color.max + GAP, id);
         let tick = to(right, 22.0);
         let has_thickness = right - left >= WITH_THICKNESS;
-        let thickness = to(tick.min - 2.0, if has_thickness { 30.0 } else { 0.0 });
+        let thickness = to(tick.min - 2.0, if has_thickness { thickness } else { 0.0 });
         let count = to(thickness.min - if has_thickness { GAP } else { 0.0 }, count);
         let name = Rangef::new(id.max + GAP, count.min - GAP);
         Self {
@@ -374,8 +378,13 @@ fn paint(ui: &Ui, rect: Rect, row: &Row<'_>, columns: &Columns, state: &AppState
     right(columns.count, count_text(row, state));
     let thickness = row.summary.thickness;
     if let Some(thickness) = thickness.filter(|_| columns.thickness.span() > 0.0) {
-        right(columns.thickness, format!("{thickness:.2}"));
+        right(columns.thickness, thickness_text(row, state, thickness));
     }
+}
+
+/// A thickness as a number in the unit of the other lengths.
+pub fn thickness_text(row: &Row<'_>, state: &AppState, thickness: f64) -> String {
+    state.lengths_of(row.role).number(thickness)
 }
 
 /// Elements, or the likeness while the list is sorted by it; what it is compared with has none.
@@ -436,4 +445,40 @@ fn tick_ui(ui: &Ui, rect: Rect, row: &Row<'_>, (state, name): (&AppState, &str))
     response
         .widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, is_free, is_used, &label));
     response.on_hover_text("Use for the match")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::formats::Model;
+    use crate::geometry::{Point3, TriMesh};
+    use crate::jobs::{PartFacts, PartSource};
+    use crate::monitor::Monitor;
+    use crate::pipeline::load::{LoadSettings, prepare};
+
+    #[test]
+    fn a_thickness_has_its_digits_in_every_unit() {
+        let corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 3.0, 0.0]].map(Point3::from);
+        let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
+        let model = Arc::new(Model::from_mesh(&mesh, "triangle"));
+        let (path, monitor) = (Path::new("triangle.k"), Monitor::silent());
+        let loaded = prepare(path, model, &LoadSettings::default(), &monitor).unwrap();
+        let facts = PartFacts::of(&loaded, &monitor).unwrap();
+        let source = PartSource::File(path.to_path_buf());
+        let part = Part::new(Arc::new(loaded), Arc::new(facts), source, 1);
+        let row = Row {
+            role: Role::Crash,
+            part: &part,
+            summary: &part.facts.parts[0],
+            index: 0,
+            likeness: None,
+        };
+        let state = AppState::default();
+        for (thickness, text) in [(1.8, "1.80"), (0.0015, "0.00150")] {
+            assert_eq!(thickness_text(&row, &state, thickness), text);
+        }
+    }
 }

@@ -357,6 +357,8 @@ fn search_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
         button = button.shortcut_text("Ctrl+K");
     }
     let response = ui.add(button).on_hover_text("Search commands   Ctrl+K");
+    // Its own border takes the place of the one that a button has while the keyboard is at it.
+    focus_ring(ui, response.rect, &response);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Search commands"));
     if response.clicked() {
         commands.push(ViewCommand::SetDialog(Some(Dialog::Palette)).into());

@@ -348,20 +348,16 @@ fn cell(ui: &mut Ui, text: String, color: Color32) {
 
 /// Sign and words of what became of a start; of the words only the first where room is short.
 fn outcome_text(start: &StartRecord, state: &AppState, is_short: bool) -> String {
-    let (sign, words) = match start.outcome {
-        Some(outcome) => {
-            let sign = match outcome {
-                StartOutcome::Won => "✔",
-                StartOutcome::RunnerUp => "●",
-                StartOutcome::MergedInto { .. } => "↪",
-                StartOutcome::Dropped { .. } => "▼",
-                StartOutcome::Failed => "✖",
-            };
-            (sign, outcome_words(outcome))
-        }
-        None if state.jobs.locking_job().is_some() => ("▶", "running".to_owned()),
-        None => ("■", "not ended".to_owned()),
+    let (sign, without_end) = match start.outcome {
+        Some(StartOutcome::Won) => ("✔", ""),
+        Some(StartOutcome::RunnerUp) => ("●", ""),
+        Some(StartOutcome::MergedInto { .. }) => ("↪", ""),
+        Some(StartOutcome::Dropped { .. }) => ("▼", ""),
+        Some(StartOutcome::Failed) => ("✖", ""),
+        None if state.jobs.locking_job().is_some() => ("▶", "running"),
+        None => ("■", "not ended"),
     };
+    let words = outcome_words(start).unwrap_or_else(|| without_end.to_owned());
     let end = words.find(' ').filter(|_| is_short).unwrap_or(words.len());
     format!("{sign} {}", &words[..end])
 }

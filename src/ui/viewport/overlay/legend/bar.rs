@@ -17,6 +17,8 @@ use crate::ui::viewport::overlay::Overlay;
 
 /// Width of the bar.
 pub(super) const BAR: f32 = 14.0;
+/// Least height of the bar.
+const LEAST: f32 = 40.0;
 /// Left of the figures beside bar and ticks.
 const NUMBERS: f32 = 76.0;
 
@@ -56,18 +58,9 @@ pub(super) fn plain(
     height: f32,
     commands: &mut Vec<Command>,
 ) {
-    ui.horizontal(|ui| {
-        ui.add(egui::Label::new(RichText::new(title).size(12.0)).wrap());
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            super::fold(ui, over);
-            let values = if over.kind.is_some_and(FieldKind::has_signed_colors) {
-                menu::Values::Signed
-            } else {
-                menu::Values::Plain
-            };
-            menu::maps(ui, over, values, commands);
-        });
-    });
+    let head = head(ui, over, title, commands);
+    // The bar gives way to a title of several lines.
+    let height = (height + ui.spacing().interact_size.y - head).max(LEAST);
     ui.add_space(6.0);
     if over.is_equal() {
         equal(ui, scale, over);
@@ -98,6 +91,25 @@ pub(super) fn plain(
         None => display.limits.remove(&by),
     };
     menu::set(over, display, commands);
+}
+
+/// The title in the width that the buttons beside it leave; returns its height.
+fn head(ui: &mut Ui, over: &Overlay<'_>, title: &str, commands: &mut Vec<Command>) -> f32 {
+    let row = ui.horizontal(|ui| {
+        ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
+            super::fold(ui, over);
+            let values = if over.kind.is_some_and(FieldKind::has_signed_colors) {
+                menu::Values::Signed
+            } else {
+                menu::Values::Plain
+            };
+            menu::maps(ui, over, values, commands);
+            ui.with_layout(Layout::top_down(Align::Min), |ui| {
+                ui.add(egui::Label::new(RichText::new(title).size(12.0)).wrap());
+            });
+        });
+    });
+    row.response.rect.height()
 }
 
 /// Extremes of the values and their mean over the area, and of how many elements or nodes they are.

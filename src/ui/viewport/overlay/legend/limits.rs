@@ -164,7 +164,8 @@ pub(super) fn hide_box(ui: &mut Ui, over: &Overlay<'_>, hides_beyond: &mut bool)
     let text = RichText::new("Hide outside the limits").size(11.5);
     let response = ui.checkbox(hides_beyond, text);
     let name = format!("Hide outside the limits ({})", over.role().word());
-    let hint = "Draws only what has a value between the limits, in both windows; places without a value stay";
+    let hint = "Draws only what has a value between limits that were set by hand, in both windows; places without a \
+        value stay, and so does everything while the limits are automatic";
     response.on_hover_text(hint).accessible_name(name);
 }
 
