@@ -158,6 +158,7 @@ impl AppState {
             }
             FollowUp::SteppedInHistory(before) => {
                 self.parts.forget_missing(&self.document);
+                self.parts.refresh_likeness(&self.document);
                 self.follow_step(&before);
             }
             FollowUp::WriteProject(path, replaces) => {

@@ -107,12 +107,15 @@ pub fn find_parts(
     let Some((_, found)) = search.best else {
         return Ok(None);
     };
-    let found = task.with_further_parts(found)?;
+    let mut found = task.with_further_parts(found)?;
     let rivals = not_among(&found.part.chosen_part_ids(), rivals);
     let is_rival = |(id, _): &&(u64, Fit)| rivals.contains(id);
     let singles: Vec<(u64, Fit)> = search.singles.iter().filter(is_rival).copied().collect();
+    let presence = presence(parts, &found, &singles, &signatures);
+    // Matches on them that follow are as ambiguous, until the user chooses.
+    found.part.settings.alike_parts.clone_from(&rivals);
     Ok(Some(FoundParts {
-        presence: presence(parts, &found, &singles, &signatures),
+        presence,
         found,
         rivals,
         took_ms: millis_since(begin),
@@ -295,7 +298,7 @@ impl Task<'_> {
     fn alone(&self, ids: Vec<u64>) -> Result<Option<Found>, PipelineError> {
         let PerRole { crash, stamped } = self.parts;
         let mut settings = crash.settings.clone();
-        settings.selection = Selection::Parts(ids);
+        settings.choose(Selection::Parts(ids));
         let model = Arc::clone(&crash.model);
         let part = prepare(&crash.path, model, &settings, self.monitor);
         let Ok(part) = unless_cancelled(part)? else {

@@ -1,10 +1,11 @@
 //! A whole model beside one stamped part: the match finds the part by itself.
 
+use std::path::Path;
 use std::process::Command;
 
 use serde_json::Value;
-use shapematch::app::Action;
-use shapematch::assess::Verdict;
+use shapematch::app::{Action, PartCommand, PartRef};
+use shapematch::assess::{Reason, Verdict};
 use shapematch::jobs::{JobKind, JobOutput, PipelineRunner, Runner as _};
 use shapematch::monitor::Monitor;
 use shapematch::role::Role;
@@ -45,6 +46,12 @@ fn a_match_of_a_whole_model_tries_the_most_alike_parts_alone() {
     window.act(Action::Undo);
     window.act(Action::Undo);
     assert_eq!(window.part(Role::Crash).facts.used.len(), n_parts);
+    // So is the question, and a match finds the part again.
+    let asked_again = window.state.part_question().map(|more| more.part.id);
+    assert_eq!(asked_again, asked);
+    window.act(Action::MatchOrStop);
+    let used = &window.part(Role::Crash).facts.used;
+    assert_eq!(used.iter().copied().collect::<Vec<_>>(), [asked.unwrap()]);
 }
 
 /// Finds no crash part, as a search that is stopped at once.
@@ -117,32 +124,46 @@ TRANSL        3000.0       0.0       0.0
 *END
 ";
 
-#[test]
-fn parts_that_fit_as_well_are_told_and_all_can_be_meant() {
+/// The folder of that deck and of the stamped part.
+fn twice() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     write_bracket(folder.path(), SampleVariant::Plain);
     let [crash, own] = ["crash.k", "own.k"].map(|name| folder.path().join(name));
     std::fs::rename(crash, own).unwrap();
     write_bracket(folder.path(), SampleVariant::WholeModel);
     std::fs::write(folder.path().join("twice.k"), TWICE).unwrap();
-    let told = "fits part 2000040, and part 52000040 about as well";
+    folder
+}
 
+/// The window with both of them, not matched yet.
+fn window_of_twice(folder: &Path) -> Window {
     let mut window = Window::new();
     window.runner = Some(really);
     for (name, role) in [("twice.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
-        window.open(folder.path().join(name).to_str().unwrap(), role);
+        window.open(folder.join(name).to_str().unwrap(), role);
     }
+    window
+}
+
+/// The record of a match of the command line.
+fn record_of(folder: &Path, args: &[&str]) -> Value {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_shapematch"));
+    command.current_dir(folder).arg("match").args(args);
+    let done = command.args(["--json", "-"]).output().unwrap();
+    serde_json::from_slice(&done.stdout).unwrap()
+}
+
+#[test]
+fn parts_that_fit_as_well_are_told_and_all_can_be_meant() {
+    let folder = twice();
+    let told = "fits part 2000040, and part 52000040 about as well";
+
+    let mut window = window_of_twice(folder.path());
     window.act(Action::MatchOrStop);
     let mut rows = window.state.log.rows().iter();
     assert!(rows.any(|row| row.text.contains(told)));
 
-    let run = |args: &[&str]| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_shapematch"));
-        command.current_dir(folder.path()).arg("match").args(args);
-        let done = command.output().unwrap();
-        serde_json::from_slice::<Value>(&done.stdout).unwrap()
-    };
-    let record = run(&["twice.k", "stamped.dynain", "--json", "-"]);
+    let record = record_of(folder.path(), &["twice.k", "stamped.dynain"]);
     // Which of the two is meant no distance tells.
     assert_eq!(record["verdict"], "check");
     assert_eq!(record["pose_statement"], "ambiguous");
@@ -153,25 +174,50 @@ fn parts_that_fit_as_well_are_told_and_all_can_be_meant() {
     let told = "fits part 52000040 about as well";
     let reasons = record["reasons"].to_string();
     assert!(reasons.contains(told), "{reasons}");
-    let record = run(&[
-        "twice.k",
-        "stamped.dynain",
-        "--crash-part",
-        "2000040",
-        "--json",
-        "-",
-    ]);
-    assert_eq!(record["verdict"], "good");
-    let record = run(&[
-        "twice.k",
-        "stamped.dynain",
-        "--crash-part",
-        "all",
-        "--json",
-        "-",
-    ]);
+    let with_parts = |parts| {
+        let args = ["twice.k", "stamped.dynain", "--crash-part", parts];
+        record_of(folder.path(), &args)
+    };
+    assert_eq!(with_parts("2000040")["verdict"], "good");
+    let record = with_parts("all");
     assert_eq!(
         record["files"]["crash"]["parts"].as_array().unwrap().len(),
         6
     );
+}
+
+#[test]
+fn which_of_several_parts_is_meant_stays_open_until_the_user_has_chosen() {
+    let folder = twice();
+    let project = folder.path().join("car.shapematch");
+    let name = project.to_str().unwrap();
+    let verdict_of = |window: &mut Window| {
+        window.act(Action::MatchOrStop);
+        let result = window.state.document.current_result().expect("a result");
+        let is_open = |reason: &Reason| matches!(reason, Reason::AlikeParts { .. });
+        let is_open = result.run.assessment.reasons.iter().any(is_open);
+        assert_eq!(is_open, result.verdict() == Verdict::Check);
+        let line = window.state.document.command_line().unwrap();
+        // The part is named only where the user chose it: the search tells of the others.
+        assert_eq!(line.contains("--crash-part 2000040"), !is_open, "{line}");
+        result.verdict()
+    };
+    let mut window = window_of_twice(folder.path());
+    for _ in 0..2 {
+        assert_eq!(verdict_of(&mut window), Verdict::Check);
+    }
+    let saved = window.state.to_project(0);
+    saved.write(&project).unwrap();
+    assert_eq!(record_of(folder.path(), &[name])["verdict"], "check");
+    let mut again = Window::new();
+    again.runner = Some(really);
+    again.open(name, Role::Crash);
+    assert_eq!(verdict_of(&mut again), Verdict::Check);
+
+    // The part that is matched already is a choice too.
+    let (role, id) = (Role::Crash, 2_000_040);
+    window.apply(PartCommand::UseOnly(PartRef { role, id }));
+    assert_eq!(verdict_of(&mut window), Verdict::Good);
+    window.state.to_project(0).write(&project).unwrap();
+    assert_eq!(record_of(folder.path(), &[name])["verdict"], "good");
 }

@@ -212,6 +212,6 @@ impl PartsState {
         if work.is_unlocked().is_err() {
             return Vec::new();
         }
-        self.reselect(work, role, |settings| settings.selection = selection)
+        self.reselect(work, role, |settings| settings.choose(selection))
     }
 }

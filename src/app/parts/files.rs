@@ -428,6 +428,11 @@ impl PartsState {
                 // Further stamped files stand for the crash part that they were added to.
                 if role == Role::Crash {
                     n_dropped = Some(document.drop_further());
+                } else if let Some(crash) = &mut document.parts.crash
+                    && !crash.loaded.settings.alike_parts.is_empty()
+                {
+                    // They fit the stamped part before.
+                    crash.loaded = Arc::new(crash.loaded.without_alike_parts()).into();
                 }
             }
             *document.parts.get_mut(role) = Some(new);

@@ -94,8 +94,9 @@ impl PartsState {
         self.likeness = to.and_then(|to| document.likeness_to(to));
     }
 
-    /// After a part came or went: the same comparison again, or the obvious one for a whole car.
-    pub(super) fn refresh_likeness(&mut self, document: &Document) {
+    /// After a part came or went, or a step in the history: the same comparison again, or the obvious one for a whole
+    /// car.
+    pub(in crate::app) fn refresh_likeness(&mut self, document: &Document) {
         let is_car = document
             .part(Role::Crash)
             .is_some_and(|part| part.facts.parts.len() > MANY);
