@@ -43,6 +43,8 @@ pub(super) enum FollowUp {
     PartLoaded(Role),
     /// A part took another selection or unit.
     PartReselected(Role),
+    /// The part that was chosen to be matched at once is made.
+    PartChosen,
     /// Further stamped files are to be read again: all, or those of these files.
     ReadFurtherAgain(Option<BTreeSet<PathBuf>>),
     /// The further stamped files went with the crash part that they stood for.
@@ -105,6 +107,7 @@ impl AppState {
                 let (mut work, topics) = self.split();
                 return topics.reduce.reduce_again(&mut work, role);
             }
+            FollowUp::PartChosen => return self.match_chosen(),
             FollowUp::ReadFurtherAgain(changed) => {
                 return self.read_further_again(changed.as_ref());
             }
@@ -168,6 +171,11 @@ impl AppState {
             FollowUp::Quit => return self.leave(),
         }
         Vec::new()
+    }
+
+    fn match_chosen(&mut self) -> Vec<Effect> {
+        let (mut work, topics) = self.split();
+        topics.matching.run_match(&mut work)
     }
 
     fn read_further_again(&mut self, changed: Option<&BTreeSet<PathBuf>>) -> Vec<Effect> {

@@ -9,7 +9,7 @@ use std::time::Instant;
 pub use fit::{Fit, Presence};
 
 use super::error::unless_cancelled;
-use super::likeness::{Moments, Signature, moments_of_parts, more_alike};
+use super::likeness::{AS_ALIKE, Moments, Signature, moments_of_parts, more_alike};
 use super::load::{LoadedPart, prepare};
 use super::match_parts::{MatchRecipe, MatchRun, match_parts};
 use super::{PipelineError, millis_since};
@@ -160,10 +160,7 @@ fn presence(
         let Some(own) = signatures.shape(*id) else {
             continue;
         };
-        if shapes
-            .iter()
-            .all(|shape| shape.likeness(&own) < fit::AS_ALIKE)
-        {
+        if shapes.iter().all(|shape| shape.likeness(&own) < AS_ALIKE) {
             shapes.push(own);
             others.push((*id, *of_rival));
         }
@@ -194,7 +191,7 @@ pub fn is_part_open(parts: PerRole<&LoadedPart>) -> bool {
     let singles = singles
         .into_iter()
         .map(|(likeness, ids)| (ids[0], likeness));
-    more_alike(singles, together).is_some()
+    !more_alike(singles, together).is_empty()
 }
 
 /// What every match of the search needs.

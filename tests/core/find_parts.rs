@@ -6,7 +6,7 @@ use std::process::Command;
 use serde_json::Value;
 use shapematch::app::{Action, PartCommand, PartRef};
 use shapematch::assess::{Reason, Verdict};
-use shapematch::jobs::{JobKind, JobOutput, PipelineRunner, Runner as _};
+use shapematch::jobs::{JobKey, JobKind, JobOutput, PipelineRunner, Runner as _};
 use shapematch::monitor::Monitor;
 use shapematch::role::Role;
 use shapematch::samples::SampleVariant;
@@ -26,7 +26,8 @@ fn a_match_of_a_whole_model_tries_the_most_alike_parts_alone() {
     let mut window = Window::with_files_of(folder.path(), really);
     let n_parts = window.part(Role::Crash).facts.used.len();
     assert!(n_parts > 2, "{n_parts}");
-    let asked = window.state.part_question().map(|more| more.part.id);
+    let asked_part = |window: &Window| Some(window.state.part_question()?.single()?.id);
+    let asked = asked_part(&window);
     window.act(Action::MatchOrStop);
     let used = &window.part(Role::Crash).facts.used;
     assert_eq!(used.iter().copied().collect::<Vec<_>>(), [asked.unwrap()]);
@@ -47,8 +48,7 @@ fn a_match_of_a_whole_model_tries_the_most_alike_parts_alone() {
     window.act(Action::Undo);
     assert_eq!(window.part(Role::Crash).facts.used.len(), n_parts);
     // So is the question, and a match finds the part again.
-    let asked_again = window.state.part_question().map(|more| more.part.id);
-    assert_eq!(asked_again, asked);
+    assert_eq!(asked_part(&window), asked);
     window.act(Action::MatchOrStop);
     let used = &window.part(Role::Crash).facts.used;
     assert_eq!(used.iter().copied().collect::<Vec<_>>(), [asked.unwrap()]);
@@ -106,23 +106,7 @@ fn one_thread_and_sixteen_give_the_same_match_and_verdict() {
 }
 
 /// A deck that has the parts of the bracket's car, and its own part once more somewhere else.
-const TWICE: &str = "*KEYWORD
-*INCLUDE
-crash.k
-*INCLUDE_TRANSFORM
-own.k
-$#  idnoff    ideoff    idpoff    idmoff    idsoff
-  50000000  50000000  50000000
-$#  idroff
-
-
-$#  tranid
-       900
-*DEFINE_TRANSFORMATION
-       900
-TRANSL        3000.0       0.0       0.0
-*END
-";
+const TWICE: &str = include_str!("../data/twice.k");
 
 /// The folder of that deck and of the stamped part.
 fn twice() -> tempfile::TempDir {
@@ -163,7 +147,8 @@ fn parts_that_fit_as_well_are_told_and_all_can_be_meant() {
     let mut rows = window.state.log.rows().iter();
     assert!(rows.any(|row| row.text.contains(told)));
 
-    let record = record_of(folder.path(), &["twice.k", "stamped.dynain"]);
+    let args = ["twice.k", "stamped.dynain", "--report", "report.html"];
+    let record = record_of(folder.path(), &args);
     // Which of the two is meant no distance tells.
     assert_eq!(record["verdict"], "check");
     assert_eq!(record["pose_statement"], "ambiguous");
@@ -174,6 +159,10 @@ fn parts_that_fit_as_well_are_told_and_all_can_be_meant() {
     let told = "fits part 52000040 about as well";
     let reasons = record["reasons"].to_string();
     assert!(reasons.contains(told), "{reasons}");
+    let report = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(report.contains("On other crash parts: the stamped part fits part 52000040"));
+    assert!(report.contains("The pose is one of several that fit"));
+    assert!(!report.contains("probably right"));
     let with_parts = |parts| {
         let args = ["twice.k", "stamped.dynain", "--crash-part", parts];
         record_of(folder.path(), &args)
@@ -203,6 +192,10 @@ fn which_of_several_parts_is_meant_stays_open_until_the_user_has_chosen() {
         result.verdict()
     };
     let mut window = window_of_twice(folder.path());
+    // Of parts that are equally alike none is proposed.
+    let asked = window.state.part_question().unwrap();
+    assert_eq!(asked.single(), None);
+    assert_eq!(asked.title(&window.state.document), "2000040, 52000040");
     for _ in 0..2 {
         assert_eq!(verdict_of(&mut window), Verdict::Check);
     }
@@ -220,4 +213,30 @@ fn which_of_several_parts_is_meant_stays_open_until_the_user_has_chosen() {
     assert_eq!(verdict_of(&mut window), Verdict::Good);
     window.state.to_project(0).write(&project).unwrap();
     assert_eq!(record_of(folder.path(), &[name])["verdict"], "good");
+}
+
+#[test]
+fn a_part_that_is_chosen_after_a_match_of_several_is_matched_at_once() {
+    let folder = twice();
+    let mut window = window_of_twice(folder.path());
+    window.act(Action::MatchOrStop);
+    let role = Role::Crash;
+    // The other one, and the same once more, whose surface is there.
+    for _ in 0..2 {
+        let id = 52_000_040;
+        window.apply(PartCommand::MatchOnly(PartRef { role, id }));
+        assert!(window.part(role).facts.used.iter().eq(&[id]));
+        let result = window.state.document.current_result().expect("a result");
+        assert_eq!(result.verdict(), Verdict::Good);
+    }
+    // A choice that is given up is not matched later.
+    window.holds = true;
+    let id = 2_000_040;
+    window.apply(PartCommand::MatchOnly(PartRef { role, id }));
+    window.cancel(JobKey::Reselect(role));
+    window.finish_held();
+    window.holds = false;
+    window.apply(PartCommand::UseOnly(PartRef { role, id }));
+    assert!(window.part(role).facts.used.iter().eq(&[id]));
+    assert!(window.state.document.current_result().is_none());
 }
