@@ -47,6 +47,8 @@ pub(super) enum FollowUp {
     },
     /// A part took another selection or unit.
     PartReselected(Role),
+    /// The part that was chosen to be matched at once is made.
+    PartChosen,
     /// Further stamped files are to be read again: all, or those of these files.
     ReadFurtherAgain(Option<BTreeSet<PathBuf>>),
     /// The further stamped files went with the crash part that they stood for.
@@ -111,6 +113,7 @@ impl AppState {
                 let (mut work, topics) = self.split();
                 return topics.reduce.reduce_again(&mut work, role);
             }
+            FollowUp::PartChosen => return self.match_chosen(),
             FollowUp::ReadFurtherAgain(changed) => {
                 return self.read_further_again(changed.as_ref());
             }
@@ -164,6 +167,7 @@ impl AppState {
             }
             FollowUp::SteppedInHistory(before) => {
                 self.parts.forget_missing(&self.document);
+                self.parts.refresh_likeness(&self.document);
                 self.follow_step(&before);
             }
             FollowUp::WriteProject(path, replaces) => {
@@ -173,6 +177,11 @@ impl AppState {
             FollowUp::Quit => return self.leave(),
         }
         Vec::new()
+    }
+
+    fn match_chosen(&mut self) -> Vec<Effect> {
+        let (mut work, topics) = self.split();
+        topics.matching.run_match(&mut work)
     }
 
     fn read_further_again(&mut self, changed: Option<&BTreeSet<PathBuf>>) -> Vec<Effect> {

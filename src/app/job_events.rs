@@ -79,6 +79,7 @@ impl AppState {
         match key {
             JobKey::Verdict | JobKey::Measure => self.matching.forget_asked(),
             JobKey::Overlap => self.moving.forget_asked(),
+            JobKey::Reselect(_) => self.end_of(key),
             _ => {}
         }
     }
@@ -288,8 +289,9 @@ impl AppState {
                 let (mut work, topics) = self.split();
                 topics.matching.match_ended(&mut work);
             }
-            // One that a newer load took the place of is none of those that are waited for.
+            // One that a newer one took the place of is none of those that are waited for.
             JobKey::Load(_) if !self.jobs.is_active(key) => self.parts.load_ended(),
+            JobKey::Reselect(_) if !self.jobs.is_active(key) => self.parts.choice_ended(),
             _ => {}
         }
     }

@@ -38,10 +38,13 @@ impl Verdict {
         }
     }
 
-    /// What to do with the pose, as a sentence.
-    pub fn advice(self) -> &'static str {
+    /// What to do with the pose of which this was stated, as a sentence.
+    pub fn advice(self, pose: Option<PoseKind>) -> &'static str {
         match self {
             Self::Good => "The pose can be used.",
+            Self::Check if pose == Some(PoseKind::Ambiguous) => {
+                "The pose is one of several that fit; choose the one that is meant."
+            }
             Self::Check => "The pose is probably right; check the reasons.",
             Self::Poor => "Do not use this pose.",
         }

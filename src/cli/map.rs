@@ -517,11 +517,11 @@ fn load_all(args: &MapArgs, monitor: &Monitor) -> anyhow::Result<(LoadedPart, Ve
     let settings = |role, part: Option<&str>, length_factor: f64| LoadSettings {
         selection: selection(role, part),
         length_factor,
-        units: None,
         read: ReadOptions {
             include_folders: choice.include_folder.clone(),
             ..ReadOptions::default()
         },
+        ..LoadSettings::default()
     };
     let crash = load(
         &args.crash,

@@ -221,9 +221,9 @@ fn run_match(
         Some(of_parts) if is_as_found => of_parts.run(),
         _ => {
             let (recipe, current) = (&asked.recipe, &asked.current);
-            let mut run = match_parts(parts, reduced.as_ref(), recipe, current, monitor)?;
+            let run = match_parts(parts, reduced.as_ref(), recipe, current, monitor)?;
+            let mut run = run.beside_alike_parts(&parts.crash.settings.alike_parts);
             if let Some(of_parts) = found {
-                run = run.beside_alike_parts(&of_parts.rivals);
                 run.times.find_ms = of_parts.took_ms;
                 run.times.total_ms += of_parts.took_ms;
             }

@@ -172,6 +172,7 @@ fn load_settings(input: &InputArgs, role: Role) -> LoadSettings {
             include_folders: input.include_folder.clone(),
             ..ReadOptions::default().with_limit(input.read_limit)
         },
+        ..LoadSettings::default()
     }
 }
 

@@ -220,6 +220,7 @@ fn run_match(input: &MatchInput, monitor: MatchMonitor<'_>) -> Result<JobOutput,
         &input.current,
         monitor,
     )?;
+    let run = run.beside_alike_parts(&input.parts.crash.settings.alike_parts);
     Ok(JobOutput::Matched(Arc::new(run)))
 }
 

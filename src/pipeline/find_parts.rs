@@ -9,7 +9,7 @@ use std::time::Instant;
 pub use fit::{Fit, Presence};
 
 use super::error::unless_cancelled;
-use super::likeness::{Moments, Signature, moments_of_parts, more_alike};
+use super::likeness::{AS_ALIKE, Moments, Signature, moments_of_parts, more_alike};
 use super::load::{LoadedPart, prepare};
 use super::match_parts::{MatchRecipe, MatchRun, match_parts};
 use super::{PipelineError, millis_since};
@@ -107,12 +107,15 @@ pub fn find_parts(
     let Some((_, found)) = search.best else {
         return Ok(None);
     };
-    let found = task.with_further_parts(found)?;
+    let mut found = task.with_further_parts(found)?;
     let rivals = not_among(&found.part.chosen_part_ids(), rivals);
     let is_rival = |(id, _): &&(u64, Fit)| rivals.contains(id);
     let singles: Vec<(u64, Fit)> = search.singles.iter().filter(is_rival).copied().collect();
+    let presence = presence(parts, &found, &singles, &signatures);
+    // Matches on them that follow are as ambiguous, until the user chooses.
+    found.part.settings.alike_parts.clone_from(&rivals);
     Ok(Some(FoundParts {
-        presence: presence(parts, &found, &singles, &signatures),
+        presence,
         found,
         rivals,
         took_ms: millis_since(begin),
@@ -157,10 +160,7 @@ fn presence(
         let Some(own) = signatures.shape(*id) else {
             continue;
         };
-        if shapes
-            .iter()
-            .all(|shape| shape.likeness(&own) < fit::AS_ALIKE)
-        {
+        if shapes.iter().all(|shape| shape.likeness(&own) < AS_ALIKE) {
             shapes.push(own);
             others.push((*id, *of_rival));
         }
@@ -191,7 +191,7 @@ pub fn is_part_open(parts: PerRole<&LoadedPart>) -> bool {
     let singles = singles
         .into_iter()
         .map(|(likeness, ids)| (ids[0], likeness));
-    more_alike(singles, together).is_some()
+    !more_alike(singles, together).is_empty()
 }
 
 /// What every match of the search needs.
@@ -295,7 +295,7 @@ impl Task<'_> {
     fn alone(&self, ids: Vec<u64>) -> Result<Option<Found>, PipelineError> {
         let PerRole { crash, stamped } = self.parts;
         let mut settings = crash.settings.clone();
-        settings.selection = Selection::Parts(ids);
+        settings.choose(Selection::Parts(ids));
         let model = Arc::clone(&crash.model);
         let part = prepare(&crash.path, model, &settings, self.monitor);
         let Ok(part) = unless_cancelled(part)? else {

@@ -109,17 +109,20 @@ pub fn moments_of_parts(
 
 /// Less alike parts are not taken for each other.
 const ALIKE: f64 = 0.5;
+/// Parts about as alike as the most alike one may be meant as well: copies of it, and the other side of the car.
+pub(super) const AS_ALIKE: f64 = 0.97;
 
-/// Of the likenesses of several parts to another, the most alike part, if it alone is more like it than all
-/// `together` are. Of parts that are equally alike it is the first.
-pub fn more_alike(of_parts: impl IntoIterator<Item = (u64, f64)>, together: f64) -> Option<u64> {
-    let mut best = (None, ALIKE.max(together));
-    for (id, likeness) in of_parts {
-        if likeness > best.1 {
-            best = (Some(id), likeness);
-        }
-    }
-    best.0
+/// Of the likenesses of several parts to another, the most alike part and those that are about as alike, by their ids, if
+/// each alone is more like it than all `together` are.
+pub fn more_alike(of_parts: impl IntoIterator<Item = (u64, f64)>, together: f64) -> Vec<u64> {
+    let least = ALIKE.max(together);
+    let of_parts = of_parts.into_iter();
+    let mut found: Vec<(u64, f64)> = of_parts.filter(|(_, own)| *own > least).collect();
+    let best = found.iter().fold(0.0, |best, (_, own)| own.max(best));
+    found.retain(|(_, own)| *own >= AS_ALIKE * best);
+    let mut ids: Vec<u64> = found.into_iter().map(|(id, _)| id).collect();
+    ids.sort_unstable();
+    ids
 }
 
 /// What is compared.
@@ -219,6 +222,16 @@ mod tests {
             signature(&moved, 1000.0),
         );
         assert!(a.likeness(&b) > 0.999_999, "{a:?} {b:?}");
+    }
+
+    #[test]
+    fn parts_that_are_as_alike_are_named_together() {
+        let of = |likenesses: &[(u64, f64)], together| more_alike(likenesses.to_vec(), together);
+        let all = [(42, 0.999), (41, 1.0), (26, 0.6), (40, 0.999)];
+        assert_eq!(of(&all, 0.4), [40, 41, 42]);
+        assert_eq!(of(&all[2..3], 0.4), [26]);
+        assert!(of(&all[2..3], 0.7).is_empty());
+        assert!(of(&[(26, 0.4)], 0.0).is_empty(), "it is hardly alike");
     }
 
     #[test]

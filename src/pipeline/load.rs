@@ -39,6 +39,9 @@ const N_NEAR_PARTS: usize = 5;
 pub struct LoadSettings {
     /// Which elements make the part.
     pub selection: Selection,
+    /// Where the program found these parts of a crash model for the stamped part: the ids of others that it fits about
+    /// as well. Empty as soon as the user has chosen.
+    pub alike_parts: Vec<u64>,
     /// Coordinates are multiplied by this once, here; 1 for a file in the crash model's unit.
     pub length_factor: f64,
     /// The units of the file as the user set them; `None` leaves them to the file and its sizes.
@@ -51,10 +54,19 @@ impl Default for LoadSettings {
     fn default() -> Self {
         Self {
             selection: Selection::All,
+            alike_parts: Vec::new(),
             length_factor: 1.0,
             units: None,
             read: ReadOptions::default(),
         }
+    }
+}
+
+impl LoadSettings {
+    /// Takes the parts that the user chose.
+    pub fn choose(&mut self, selection: Selection) {
+        self.selection = selection;
+        self.alike_parts.clear();
     }
 }
 
@@ -197,6 +209,14 @@ impl LoadedPart {
     pub fn with_units(&self, units: Option<Units>) -> Self {
         let mut part = self.clone();
         part.settings.units = units;
+        part
+    }
+
+    /// The same where no other of its parts is known to fit the stamped part as well.
+    #[must_use]
+    pub fn without_alike_parts(&self) -> Self {
+        let mut part = self.clone();
+        part.settings.alike_parts.clear();
         part
     }
 

@@ -233,9 +233,12 @@ pub enum ParseMatrixError {
     /// The numbers make no similarity.
     #[error(transparent)]
     Matrix(#[from] MatrixError),
-    /// A quaternion of length zero.
-    #[error("the quaternion has no length")]
-    NoRotation,
+    /// A quaternion of this length.
+    #[error("the quaternion w x y z has the length {}, not 1", trimmed(*.0, 3))]
+    NotUnit(f64),
+    /// Eight numbers that are two rows of R | t.
+    #[error("the text holds two rows of a matrix, a pose has three or four")]
+    TwoRows,
 }
 
 /// Reads a pose from text: numbers between blanks, tabs, commas, semicolons, bracketed or not,
@@ -356,11 +359,26 @@ fn twelve(values: &[f64]) -> Result<(Similarity, MatrixLayout), ParseMatrixError
     Ok((motion, MatrixLayout::RotationTranslation))
 }
 
+/// Quaternions are written with few digits, but not with a length that is plainly another.
+const UNIT_TOLERANCE: f64 = 0.01;
+
+fn is_unit(length: f64) -> bool {
+    (length - 1.0).abs() <= UNIT_TOLERANCE
+}
+
 fn seven(values: &[f64]) -> Result<(Similarity, MatrixLayout), ParseMatrixError> {
     let q = nalgebra::Quaternion::new(values[0], values[1], values[2], values[3]);
-    let q = Rotation::try_new(q, 1e-12).ok_or(ParseMatrixError::NoRotation)?;
-    let rotation = *q.to_rotation_matrix().matrix();
     let scale = values.get(7).copied().unwrap_or(1.0);
+    let [first, second] = [0, 4].map(|at| Vector3::from_column_slice(&values[at..at + 3]));
+    let are_rows = [first, second].iter().all(|row| is_unit(row.norm()))
+        && first.dot(&second).abs() <= UNIT_TOLERANCE;
+    if values.len() == 8 && are_rows && scale != 1.0 {
+        return Err(ParseMatrixError::TwoRows);
+    }
+    if !is_unit(q.norm()) {
+        return Err(ParseMatrixError::NotUnit(q.norm()));
+    }
+    let rotation = *Rotation::from_quaternion(q).to_rotation_matrix().matrix();
     let motion = similarity(&from_parts(&rotation, &values[4..7], scale))?;
     Ok((motion, MatrixLayout::QuaternionTranslation))
 }
@@ -525,9 +543,21 @@ mod tests {
             parse_matrix(sheared),
             Err(ParseMatrixError::Matrix(_))
         ));
-        assert_eq!(
-            parse_matrix("0 0 0 0 1 2 3"),
-            Err(ParseMatrixError::NoRotation)
-        );
+        for (text, error) in [
+            ("0 0 0 0 1 2 3", ParseMatrixError::NotUnit(0.0)),
+            (
+                "1 0 0 10 4 5 6",
+                ParseMatrixError::NotUnit(101.0_f64.sqrt()),
+            ),
+            ("1 0 0 10 0 1 0 20", ParseMatrixError::TwoRows),
+            ("1 0 0 0\n0 1 0 20", ParseMatrixError::TwoRows),
+        ] {
+            assert_eq!(parse_matrix(text), Err(error), "{text}");
+        }
+        let told = parse_matrix("2 0 0 0 1 2 3").unwrap_err().to_string();
+        assert_eq!(told, "the quaternion w x y z has the length 2, not 1");
+        // Few digits are no other length, and a pose may go one unit along an axis.
+        assert!(parse_matrix("0.71 0 0 0.71 10.5 20 -30").is_ok());
+        assert!(parse_matrix("1 0 0 0 0 1 0 1").is_ok());
     }
 }

@@ -1,11 +1,12 @@
 //! A whole model beside one stamped part: the match finds the part by itself.
 
+use std::path::Path;
 use std::process::Command;
 
 use serde_json::Value;
-use shapematch::app::Action;
-use shapematch::assess::Verdict;
-use shapematch::jobs::{JobKind, JobOutput, PipelineRunner, Runner as _};
+use shapematch::app::{Action, PartCommand, PartRef};
+use shapematch::assess::{Reason, Verdict};
+use shapematch::jobs::{JobKey, JobKind, JobOutput, PipelineRunner, Runner as _};
 use shapematch::monitor::Monitor;
 use shapematch::role::Role;
 use shapematch::samples::SampleVariant;
@@ -25,7 +26,8 @@ fn a_match_of_a_whole_model_tries_the_most_alike_parts_alone() {
     let mut window = Window::with_files_of(folder.path(), really);
     let n_parts = window.part(Role::Crash).facts.used.len();
     assert!(n_parts > 2, "{n_parts}");
-    let asked = window.state.part_question().map(|more| more.part.id);
+    let asked_part = |window: &Window| Some(window.state.part_question()?.single()?.id);
+    let asked = asked_part(&window);
     window.act(Action::MatchOrStop);
     let used = &window.part(Role::Crash).facts.used;
     assert_eq!(used.iter().copied().collect::<Vec<_>>(), [asked.unwrap()]);
@@ -45,6 +47,11 @@ fn a_match_of_a_whole_model_tries_the_most_alike_parts_alone() {
     window.act(Action::Undo);
     window.act(Action::Undo);
     assert_eq!(window.part(Role::Crash).facts.used.len(), n_parts);
+    // So is the question, and a match finds the part again.
+    assert_eq!(asked_part(&window), asked);
+    window.act(Action::MatchOrStop);
+    let used = &window.part(Role::Crash).facts.used;
+    assert_eq!(used.iter().copied().collect::<Vec<_>>(), [asked.unwrap()]);
 }
 
 /// Finds no crash part, as a search that is stopped at once.
@@ -99,50 +106,49 @@ fn one_thread_and_sixteen_give_the_same_match_and_verdict() {
 }
 
 /// A deck that has the parts of the bracket's car, and its own part once more somewhere else.
-const TWICE: &str = "*KEYWORD
-*INCLUDE
-crash.k
-*INCLUDE_TRANSFORM
-own.k
-$#  idnoff    ideoff    idpoff    idmoff    idsoff
-  50000000  50000000  50000000
-$#  idroff
+const TWICE: &str = include_str!("../data/twice.k");
 
-
-$#  tranid
-       900
-*DEFINE_TRANSFORMATION
-       900
-TRANSL        3000.0       0.0       0.0
-*END
-";
-
-#[test]
-fn parts_that_fit_as_well_are_told_and_all_can_be_meant() {
+/// The folder of that deck and of the stamped part.
+fn twice() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     write_bracket(folder.path(), SampleVariant::Plain);
     let [crash, own] = ["crash.k", "own.k"].map(|name| folder.path().join(name));
     std::fs::rename(crash, own).unwrap();
     write_bracket(folder.path(), SampleVariant::WholeModel);
     std::fs::write(folder.path().join("twice.k"), TWICE).unwrap();
-    let told = "fits part 2000040, and part 52000040 about as well";
+    folder
+}
 
+/// The window with both of them, not matched yet.
+fn window_of_twice(folder: &Path) -> Window {
     let mut window = Window::new();
     window.runner = Some(really);
     for (name, role) in [("twice.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
-        window.open(folder.path().join(name).to_str().unwrap(), role);
+        window.open(folder.join(name).to_str().unwrap(), role);
     }
+    window
+}
+
+/// The record of a match of the command line.
+fn record_of(folder: &Path, args: &[&str]) -> Value {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_shapematch"));
+    command.current_dir(folder).arg("match").args(args);
+    let done = command.args(["--json", "-"]).output().unwrap();
+    serde_json::from_slice(&done.stdout).unwrap()
+}
+
+#[test]
+fn parts_that_fit_as_well_are_told_and_all_can_be_meant() {
+    let folder = twice();
+    let told = "fits part 2000040, and part 52000040 about as well";
+
+    let mut window = window_of_twice(folder.path());
     window.act(Action::MatchOrStop);
     let mut rows = window.state.log.rows().iter();
     assert!(rows.any(|row| row.text.contains(told)));
 
-    let run = |args: &[&str]| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_shapematch"));
-        command.current_dir(folder.path()).arg("match").args(args);
-        let done = command.output().unwrap();
-        serde_json::from_slice::<Value>(&done.stdout).unwrap()
-    };
-    let record = run(&["twice.k", "stamped.dynain", "--json", "-"]);
+    let args = ["twice.k", "stamped.dynain", "--report", "report.html"];
+    let record = record_of(folder.path(), &args);
     // Which of the two is meant no distance tells.
     assert_eq!(record["verdict"], "check");
     assert_eq!(record["pose_statement"], "ambiguous");
@@ -153,25 +159,84 @@ fn parts_that_fit_as_well_are_told_and_all_can_be_meant() {
     let told = "fits part 52000040 about as well";
     let reasons = record["reasons"].to_string();
     assert!(reasons.contains(told), "{reasons}");
-    let record = run(&[
-        "twice.k",
-        "stamped.dynain",
-        "--crash-part",
-        "2000040",
-        "--json",
-        "-",
-    ]);
-    assert_eq!(record["verdict"], "good");
-    let record = run(&[
-        "twice.k",
-        "stamped.dynain",
-        "--crash-part",
-        "all",
-        "--json",
-        "-",
-    ]);
+    let report = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(report.contains("On other crash parts: the stamped part fits part 52000040"));
+    assert!(report.contains("The pose is one of several that fit"));
+    assert!(!report.contains("probably right"));
+    let with_parts = |parts| {
+        let args = ["twice.k", "stamped.dynain", "--crash-part", parts];
+        record_of(folder.path(), &args)
+    };
+    assert_eq!(with_parts("2000040")["verdict"], "good");
+    let record = with_parts("all");
     assert_eq!(
         record["files"]["crash"]["parts"].as_array().unwrap().len(),
         6
     );
+}
+
+#[test]
+fn which_of_several_parts_is_meant_stays_open_until_the_user_has_chosen() {
+    let folder = twice();
+    let project = folder.path().join("car.shapematch");
+    let name = project.to_str().unwrap();
+    let verdict_of = |window: &mut Window| {
+        window.act(Action::MatchOrStop);
+        let result = window.state.document.current_result().expect("a result");
+        let is_open = |reason: &Reason| matches!(reason, Reason::AlikeParts { .. });
+        let is_open = result.run.assessment.reasons.iter().any(is_open);
+        assert_eq!(is_open, result.verdict() == Verdict::Check);
+        let line = window.state.document.command_line().unwrap();
+        // The part is named only where the user chose it: the search tells of the others.
+        assert_eq!(line.contains("--crash-part 2000040"), !is_open, "{line}");
+        result.verdict()
+    };
+    let mut window = window_of_twice(folder.path());
+    // Of parts that are equally alike none is proposed.
+    let asked = window.state.part_question().unwrap();
+    assert_eq!(asked.single(), None);
+    assert_eq!(asked.title(&window.state.document), "2000040, 52000040");
+    for _ in 0..2 {
+        assert_eq!(verdict_of(&mut window), Verdict::Check);
+    }
+    let saved = window.state.to_project(0);
+    saved.write(&project).unwrap();
+    assert_eq!(record_of(folder.path(), &[name])["verdict"], "check");
+    let mut again = Window::new();
+    again.runner = Some(really);
+    again.open(name, Role::Crash);
+    assert_eq!(verdict_of(&mut again), Verdict::Check);
+
+    // The part that is matched already is a choice too.
+    let (role, id) = (Role::Crash, 2_000_040);
+    window.apply(PartCommand::UseOnly(PartRef { role, id }));
+    assert_eq!(verdict_of(&mut window), Verdict::Good);
+    window.state.to_project(0).write(&project).unwrap();
+    assert_eq!(record_of(folder.path(), &[name])["verdict"], "good");
+}
+
+#[test]
+fn a_part_that_is_chosen_after_a_match_of_several_is_matched_at_once() {
+    let folder = twice();
+    let mut window = window_of_twice(folder.path());
+    window.act(Action::MatchOrStop);
+    let role = Role::Crash;
+    // The other one, and the same once more, whose surface is there.
+    for _ in 0..2 {
+        let id = 52_000_040;
+        window.apply(PartCommand::MatchOnly(PartRef { role, id }));
+        assert!(window.part(role).facts.used.iter().eq(&[id]));
+        let result = window.state.document.current_result().expect("a result");
+        assert_eq!(result.verdict(), Verdict::Good);
+    }
+    // A choice that is given up is not matched later.
+    window.holds = true;
+    let id = 2_000_040;
+    window.apply(PartCommand::MatchOnly(PartRef { role, id }));
+    window.cancel(JobKey::Reselect(role));
+    window.finish_held();
+    window.holds = false;
+    window.apply(PartCommand::UseOnly(PartRef { role, id }));
+    assert!(window.part(role).facts.used.iter().eq(&[id]));
+    assert!(window.state.document.current_result().is_none());
 }

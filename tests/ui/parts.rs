@@ -1,16 +1,20 @@
 //! A deck of five thousand parts: only what is seen is laid out, and the keys reach the rest.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use egui::Key;
+use egui::accesskit::Role as Kind;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use shapematch::app::{FileCommand, PartCommand, PartRef};
+use shapematch::assess::Verdict;
 use shapematch::role::Role;
+use shapematch::samples::{self, SamplePart, SampleSettings, SampleVariant};
 use shapematch::ui::Shell;
 
 use super::layout::texts;
-use super::story::{finish, window};
+use super::story::{click, finish, window};
 
 const N_PARTS: u64 = 5_000;
 const FIRST: u64 = 2_000_000;
@@ -153,4 +157,61 @@ fn five_thousand_parts_are_listed_filtered_and_walked_through() {
         .part(Role::Crash)
         .expect("loaded");
     assert_eq!(part.facts.used.len(), 1);
+}
+
+/// Writes the stamped bracket, and a car that has its part twice.
+fn write_twice(folder: &Path) {
+    let write = |variant| {
+        let pair = samples::generate(&SampleSettings {
+            part: SamplePart::Bracket,
+            variant,
+            ..SampleSettings::default()
+        });
+        for file in samples::files(&pair) {
+            std::fs::write(folder.join(file.name), file.bytes).unwrap();
+        }
+    };
+    write(SampleVariant::Plain);
+    std::fs::rename(folder.join("crash.k"), folder.join("own.k")).unwrap();
+    write(SampleVariant::WholeModel);
+    let deck = include_str!("../data/twice.k");
+    std::fs::write(folder.join("twice.k"), deck).unwrap();
+}
+
+#[test]
+fn a_result_that_fits_several_parts_has_a_button_for_each() {
+    let folder = tempfile::tempdir().unwrap();
+    write_twice(folder.path());
+    let mut window = window();
+    let ctx = window.ctx.clone();
+    for (name, role) in [("twice.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
+        let open = FileCommand::Open {
+            paths: vec![folder.path().join(name)],
+            role: Some(role),
+        };
+        window.state_mut().run_commands(vec![open.into()], &ctx);
+        finish(&mut window);
+    }
+    // Of two that are equally alike none is proposed.
+    assert!(window.query_by_label("Use all").is_some());
+    assert!(window.query_by_label("Match only this").is_none());
+    click(&mut window, "Match the parts");
+    finish(&mut window);
+    let verdict = |window: &Window| {
+        let result = window.state().state().document.current_result();
+        result.expect("a result").verdict()
+    };
+    assert_eq!(verdict(&window), Verdict::Check);
+    let (role, ids) = (Role::Crash, [2_000_040, 52_000_040]);
+    let document = &window.state().state().document;
+    let titles = ids.map(|id| document.part_title(PartRef { role, id }));
+    for title in &titles {
+        window.get_by_role_and_label(Kind::Button, title);
+    }
+    click(&mut window, &titles[1]);
+    finish(&mut window);
+    assert_eq!(verdict(&window), Verdict::Good);
+    let crash = window.state().state().document.part(role).unwrap();
+    assert!(crash.facts.used.iter().eq(&[ids[1]]));
+    assert!(window.query_by_label(&titles[0]).is_none());
 }

@@ -41,21 +41,17 @@ impl Document {
     pub fn command_line(&self) -> Option<String> {
         let both = self.both()?;
         let paths = both.map(path);
-        let side = |role: Role| CommandSide {
-            path: paths.get(role),
-            ..both.get(role).loaded.command_side()
-        };
-        let sides = PerRole::from_fn(side);
         let recipe = self.recipe_to_run();
-        let line = if let Some(result) = self.current_result() {
+        let mut line = if let Some(result) = self.current_result() {
             CommandLine {
-                sides,
                 alternative: result.alternative,
                 ..record::command_line(&result.run, both.map(|part| &*part.loaded))
             }
         } else {
-            self.unmatched_line(both, sides, recipe.as_ref()?)
+            self.unmatched_line(both, recipe.as_ref()?)
         };
+        line.sides.crash.path = &paths.crash;
+        line.sides.stamped.path = &paths.stamped;
         Some(examples(both) + &line.line())
     }
 
@@ -63,12 +59,12 @@ impl Document {
     fn unmatched_line<'a>(
         &'a self,
         both: PerRole<&'a Part>,
-        mut sides: PerRole<CommandSide<'a>>,
         recipe: &'a MatchRecipe,
     ) -> CommandLine<'a> {
         let ceilings = both.map(Part::ceiling);
         let is_reduced = ceilings.iter().any(|(_, ceiling)| ceiling.is_some());
         let read = &both.crash.loaded.settings;
+        let mut sides = record::match_sides(both.map(|part| &*part.loaded), &recipe.settings);
         // All parts of a model are no choice: the match finds those that fit.
         if read.selection == Selection::All {
             sides.crash.selection = None;

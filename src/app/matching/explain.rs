@@ -159,12 +159,21 @@ impl AppState {
         let Some(more) = self.more_alike() else {
             return several_parts_cause(assessment);
         };
-        let title = self.document.part_title(more.part);
-        let commands = vec![PartCommand::UseOnly(more.part).into()];
+        let title = more.title(&self.document);
+        let evidence = match more.single() {
+            Some(_) => format!("{title} alone is more like the stamped part than all together."),
+            None => format!(
+                "Each of {title} alone is more like the stamped part than all together: choose one."
+            ),
+        };
+        let remedy = more.single().map(|part| {
+            let commands = vec![PartCommand::UseOnly(part).into()];
+            (format!("Match only {}", part.id), commands)
+        });
         Some(Cause {
             title: matched_as_one(more.n_used),
-            evidence: format!("{title} alone is more like the stamped part than all together."),
-            remedy: Some((format!("Match only {}", more.part.id), commands)),
+            evidence,
+            remedy,
         })
     }
 

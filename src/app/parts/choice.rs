@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{PartCommand, PartRef, PartsState};
+use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
 use crate::app::{AppState, Document, Effect, JobBoard, Part};
 use crate::formats::Selection;
@@ -73,6 +74,7 @@ impl PartsState {
             PartCommand::UseOnly(part) => {
                 return self.use_parts(work, part.role, Selection::Parts(vec![part.id]));
             }
+            PartCommand::MatchOnly(part) => return self.match_only(work, part),
             PartCommand::UseAll(role) => {
                 if role == Role::Crash {
                     self.all_meant_for.push(work.document.stamp().parts);
@@ -212,6 +214,21 @@ impl PartsState {
         if work.is_unlocked().is_err() {
             return Vec::new();
         }
-        self.reselect(work, role, |settings| settings.selection = selection)
+        self.choice_ended();
+        self.reselect(work, role, |settings| settings.choose(selection))
+    }
+
+    /// The match follows when the surface of the part is made.
+    fn match_only(&mut self, work: &mut Work<'_>, part: PartRef) -> Vec<Effect> {
+        if work.is_unlocked().is_err() {
+            return Vec::new();
+        }
+        let effects = self.use_parts(work, part.role, Selection::Parts(vec![part.id]));
+        if work.jobs.is_active(JobKey::Reselect(part.role)) {
+            self.match_when_chosen = Some(part);
+        } else if work.document.is_only_used(part) {
+            work.follow(FollowUp::PartChosen);
+        }
+        effects
     }
 }

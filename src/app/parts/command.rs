@@ -79,6 +79,8 @@ pub enum PartCommand {
     SetUsed(PartRef, bool),
     /// Match this part of the deck and no other.
     UseOnly(PartRef),
+    /// The same, and match at once.
+    MatchOnly(PartRef),
     /// Match all parts of a deck.
     UseAll(Role),
     /// Sort the other deck's parts by likeness, or all as in the files.

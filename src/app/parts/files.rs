@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::roles::{offer_swap, remember_roles, stamped_word};
-use super::{FileCommand, Guess, PartsState};
+use super::{FileCommand, Guess, PartRef, PartsState};
 use crate::app::follow_up::FollowUp;
 use crate::app::mapping::further_dropped;
 use crate::app::work::Work;
@@ -441,6 +441,11 @@ impl PartsState {
                 // Further stamped files stand for the crash part that they were added to.
                 if role == Role::Crash {
                     n_dropped = Some(document.drop_further());
+                } else if let Some(crash) = &mut document.parts.crash
+                    && !crash.loaded.settings.alike_parts.is_empty()
+                {
+                    // They fit the stamped part before.
+                    crash.loaded = Arc::new(crash.loaded.without_alike_parts()).into();
                 }
             }
             *document.parts.get_mut(role) = Some(new);
@@ -535,6 +540,11 @@ impl PartsState {
         }
         self.refresh_likeness(work.document);
         work.follow(FollowUp::PartReselected(role));
+        let chosen = self.match_when_chosen.take();
+        let is_made = |part: &PartRef| part.role == role && work.document.is_only_used(*part);
+        if chosen.as_ref().is_some_and(is_made) {
+            work.follow(FollowUp::PartChosen);
+        }
     }
 }
 

@@ -10,6 +10,8 @@ use crate::role::{PerRole, Role};
 
 /// A crash model of so many parts is sorted as soon as the stamped part is known.
 const MANY: usize = 20;
+/// Of parts that are equally alike so many are named.
+const N_NAMED: usize = 4;
 
 /// What parts are compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,17 +52,44 @@ impl AppState {
     }
 }
 
-/// A part of the crash model that is more like the stamped part than all that are matched together.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// The part of the crash model that is more like the stamped part than all that are matched together, or several that are
+/// about equally alike.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MoreAlike {
-    /// The part compared.
-    pub part: PartRef,
+    /// Their ids.
+    pub ids: Vec<u64>,
     /// Crash parts that are matched now.
     pub n_used: usize,
 }
 
+impl MoreAlike {
+    /// The part, if it is one.
+    pub fn single(&self) -> Option<PartRef> {
+        match self.ids[..] {
+            [id] => Some(PartRef {
+                role: Role::Crash,
+                id,
+            }),
+            _ => None,
+        }
+    }
+
+    /// Its title, or the numbers of several: "2000040, 2000041 and 3 more".
+    pub fn title(&self, document: &Document) -> String {
+        if let Some(part) = self.single() {
+            return document.part_title(part);
+        }
+        let named: Vec<String> = self.ids.iter().take(N_NAMED).map(u64::to_string).collect();
+        let named = named.join(", ");
+        match self.ids.len() - self.ids.len().min(N_NAMED) {
+            0 => named,
+            more => format!("{named} and {more} more"),
+        }
+    }
+}
+
 impl AppState {
-    /// The part of the crash model that should be matched alone, where all of several are.
+    /// The parts of the crash model of which one should be matched alone, where all of several are.
     pub fn more_alike(&self) -> Option<&MoreAlike> {
         self.parts.more_alike.as_ref()?.current(&self.document)
     }
@@ -94,8 +123,9 @@ impl PartsState {
         self.likeness = to.and_then(|to| document.likeness_to(to));
     }
 
-    /// After a part came or went: the same comparison again, or the obvious one for a whole car.
-    pub(super) fn refresh_likeness(&mut self, document: &Document) {
+    /// After a part came or went, or a step in the history: the same comparison again, or the obvious one for a whole
+    /// car.
+    pub(in crate::app) fn refresh_likeness(&mut self, document: &Document) {
         let is_car = document
             .part(Role::Crash)
             .is_some_and(|part| part.facts.parts.len() > MANY);
@@ -120,14 +150,8 @@ impl Document {
         let found = self.likeness_to(LikeWhat::Used(Role::Stamped))?;
         let used = found.order.iter().filter(|id| both.crash.is_used(**id));
         let of_used = used.filter_map(|id| Some((*id, *found.of_part.get(id)?)));
-        let id = more_alike(of_used, stamped.likeness(&together))?;
-        Some(MoreAlike {
-            part: PartRef {
-                role: Role::Crash,
-                id,
-            },
-            n_used,
-        })
+        let ids = more_alike(of_used, stamped.likeness(&together));
+        (!ids.is_empty()).then_some(MoreAlike { ids, n_used })
     }
 
     /// Title of a part of a deck with its number, or the number alone.

@@ -49,6 +49,8 @@ pub struct PartsState {
     all_meant_for: Vec<PerRole<u64>>,
     /// What each part is being made again with, by the part's number.
     pending: PerRole<Option<(u64, LoadSettings)>>,
+    /// The part that is matched as soon as it is the only one of its deck.
+    match_when_chosen: Option<PartRef>,
     guess: Guess,
     /// The parts for which the hint about units was answered.
     unit_hint_dismissed_for: Option<PerRole<u64>>,
@@ -73,12 +75,23 @@ impl Document {
         let has = |p: &Part| p.facts.parts.iter().any(|row| row.id == part.id);
         self.part(part.role).is_some_and(has)
     }
+
+    /// True if it is matched and no other of its deck.
+    fn is_only_used(&self, part: PartRef) -> bool {
+        let used = self.part(part.role).map(|p| &p.facts.used);
+        used.is_some_and(|used| used.iter().eq([&part.id]))
+    }
 }
 
 impl PartsState {
     /// A file could not be read, or was not waited for.
     pub(super) fn load_ended(&mut self) {
         self.guess.n_pending = self.guess.n_pending.saturating_sub(1);
+    }
+
+    /// Another choice was made, or given up.
+    pub(super) fn choice_ended(&mut self) {
+        self.match_when_chosen = None;
     }
 
     /// What is selected may be gone after a step back, or with its file.

@@ -1,7 +1,7 @@
 //! What the words of an assessment say, and what they leave out.
 
 use super::{as_well, error_beside};
-use crate::assess::{FreeMotion, FreeMotionKind, Reason};
+use crate::assess::{FreeMotion, FreeMotionKind, PoseKind, Reason, Verdict};
 use crate::geometry::{Point3, Vector3};
 use crate::text::Lengths;
 
@@ -84,4 +84,14 @@ fn ratios_are_read_as_differences_of_the_error() {
     for (ratio, words) in pairs {
         assert_eq!(error_beside(ratio), words);
     }
+}
+
+#[test]
+fn a_pose_that_is_one_of_several_is_not_probably_right() {
+    let check = Verdict::Check;
+    assert!(check.advice(None).contains("probably right"));
+    let certain = check.advice(Some(PoseKind::Certain));
+    assert!(certain.contains("probably right"));
+    let ambiguous = check.advice(Some(PoseKind::Ambiguous));
+    assert!(ambiguous.contains("one of several"), "{ambiguous}");
 }

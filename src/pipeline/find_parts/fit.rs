@@ -1,9 +1,8 @@
 //! How well a stamped part fits a crash part, and whether the right one is there at all.
 
 use crate::assess::Verdict;
+use crate::pipeline::likeness::AS_ALIKE;
 
-/// Parts about as alike as the one that was found may fit as well.
-pub(super) const AS_ALIKE: f64 = 0.97;
 /// They do if their surfaces lie at most so many times as far apart, or farther by a distance that means nothing.
 const AS_CLOSE: f64 = 1.25;
 /// Where the best leaves something to look at, others are tried too, but for those that are less alike than this, if

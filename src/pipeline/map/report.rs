@@ -22,7 +22,9 @@ use crate::report::html::{
 };
 use crate::report::picture::{Paint, Picture, PictureMesh, picture};
 use crate::role::PerRole;
-use crate::text::{Lengths, factor_note, fixed, grouped, length, millis, percent, share, signed};
+use crate::text::{
+    Lengths, counted, factor_note, fixed, grouped, length, millis, percent, share, signed,
+};
 
 /// Pixels of a picture.
 const SIZE: [usize; 2] = [560, 380];
@@ -104,6 +106,14 @@ pub fn map_report(
 /// The headline figures: name, value, what the value is.
 fn facts(record: &MapRecord, lengths: Lengths) -> Vec<[String; 3]> {
     let mut facts = vec![
+        [
+            "Crash part".to_owned(),
+            match &record.crash_parts[..] {
+                [id] => id.to_string(),
+                ids => counted(ids.len(), "part"),
+            },
+            String::new(),
+        ],
         [
             "Area with values".to_owned(),
             percent(record.mapped_area),

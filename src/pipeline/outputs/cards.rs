@@ -4,7 +4,7 @@ mod shared_ids;
 
 use std::path::{Component, Path, PathBuf};
 
-use crate::assess::Verdict;
+use crate::assess::{Reason, Verdict};
 use crate::formats::{Format, Selection};
 use crate::pipeline::PipelineError;
 use crate::pipeline::load::LoadedPart;
@@ -44,6 +44,9 @@ pub fn cards(
     // No sign beyond ASCII comes into the deck by it.
     let alternative = run.told_alternative();
     comments.extend(alternative.map(|told| told.replace('×', "x")));
+    let reasons = run.assessment.reasons.iter();
+    let alike = reasons.filter(|reason| matches!(reason, Reason::AlikeParts { .. }));
+    comments.extend(alike.map(|reason| reason.words(lengths)));
     comments.extend(PairUnits::sentences(parts));
     comments.extend(PairUnits::stress_warning(parts));
     comments.extend(no_deck(stamped));
@@ -83,7 +86,7 @@ pub fn notes(
     let unit = Lengths::new(PairUnits::of(parts.map(Some)).lengths).suffix();
     let verdict = run.assessment.verdict;
     let poor = (verdict == Verdict::Poor).then(|| {
-        let advice = verdict.advice().trim_end_matches('.').to_lowercase();
+        let advice = verdict.advice(None).trim_end_matches('.').to_lowercase();
         format!("the pose is {}: {advice}", verdict.label())
     });
     let is_stamped = form != CardForm::IncludeTransform;

@@ -3,7 +3,8 @@
 use crate::pipeline::load::{LoadedPart, same_parts_line};
 use crate::pipeline::match_parts::MatchRun;
 use crate::pipeline::units::{PairUnits, doubts_of_set_units};
-use crate::report::command_line::CommandLine;
+use crate::registration::{MatchSettings, StartMethod};
+use crate::report::command_line::{CommandLine, CommandSide};
 use crate::report::{
     DiagnosticInfo, FileRecord, IncludedFile, MatchRecord, RecordContext, TimingsRecord,
     UnitsRecord,
@@ -52,13 +53,27 @@ pub fn match_record(run: &MatchRun, parts: PerRole<&LoadedPart>) -> MatchRecord 
 /// What the command line has to be told to do the run again.
 pub fn command_line<'a>(run: &'a MatchRun, parts: PerRole<&'a LoadedPart>) -> CommandLine<'a> {
     CommandLine {
-        sides: parts.map(LoadedPart::command_side),
+        sides: match_sides(parts, &run.recipe.settings),
         read: &parts.crash.settings.read,
         settings: &run.recipe.settings,
         max_triangles: run.max_triangles,
         current: &run.start_pose,
         alternative: run.alternative,
     }
+}
+
+/// Both files as a match has to be told. A crash part that the program chose among several that fit about as well is not
+/// named: the match finds it again and says so. One that begins at a given place has to be told which part lies there.
+pub fn match_sides<'a>(
+    parts: PerRole<&'a LoadedPart>,
+    settings: &MatchSettings,
+) -> PerRole<CommandSide<'a>> {
+    let mut sides = parts.map(LoadedPart::command_side);
+    let begins_there = settings.starts.method == StartMethod::CurrentPose;
+    if !parts.crash.settings.alike_parts.is_empty() && !begins_there {
+        sides.crash.selection = None;
+    }
+    sides
 }
 
 fn file(part: &LoadedPart, units: Option<KnownUnits>) -> FileRecord {

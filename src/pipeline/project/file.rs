@@ -51,6 +51,9 @@ pub struct PartEntry {
     pub triangles: usize,
     /// Which elements are matched.
     pub selection: Selection,
+    /// Ids of other parts that fit the stamped part about as well, where the program chose among them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub alike_parts: Vec<u64>,
     /// Factor on its coordinates.
     pub length_factor: f64,
     /// Its units, if the user set them.
@@ -78,6 +81,7 @@ impl Default for PartEntry {
             hash: None,
             triangles: 0,
             selection: Selection::All,
+            alike_parts: Vec::new(),
             length_factor: 1.0,
             units: None,
             include_folders: Vec::new(),
@@ -100,6 +104,7 @@ impl PartEntry {
             hash: part.hash(),
             triangles: part.mesh.n_triangles(),
             selection: settings.selection.clone(),
+            alike_parts: settings.alike_parts.clone(),
             length_factor: settings.length_factor,
             units: settings.units,
             include_folders: settings.read.include_folders.clone(),
@@ -112,6 +117,7 @@ impl PartEntry {
     pub fn load_settings(&self) -> LoadSettings {
         LoadSettings {
             selection: self.selection.clone(),
+            alike_parts: self.alike_parts.clone(),
             length_factor: self.length_factor,
             units: self.units,
             read: ReadOptions {

@@ -5,9 +5,9 @@ use maud::{Markup, html};
 use super::page::{folded, printable};
 use super::sections::pictures;
 use super::{Report, charts};
-use crate::assess::PoseUncertainty;
+use crate::assess::{PoseUncertainty, Reason};
 use crate::report::MatrixForm;
-use crate::text::vector;
+use crate::text::{parts_by_id, vector};
 
 impl Report<'_> {
     /// The section about the pose.
@@ -17,6 +17,12 @@ impl Report<'_> {
                 (self.uncertainty(stated))
             }
             h3 { "Poses that fit nearly as well" }
+            @if let Some(ids) = self.alike_parts() {
+                p {
+                    "On other crash parts: the stamped part fits " (parts_by_id(ids)) " about as well. On the crash \
+                     part of this report:"
+                }
+            }
             @if self.figures.rivals.is_empty() {
                 p { (self.no_rivals()) }
             } @else {
@@ -47,6 +53,15 @@ impl Report<'_> {
                 div.scale { (charts::plain_legend(scale, &lengths.axis("the pose may be off by")) ) }
             }
         }
+    }
+
+    /// Ids of the other crash parts that the stamped part fits about as well.
+    fn alike_parts(&self) -> Option<&[u64]> {
+        let mut reasons = self.record.reason_details.iter();
+        reasons.find_map(|reason| match reason {
+            Reason::AlikeParts { ids } => Some(&ids[..]),
+            _ => None,
+        })
     }
 
     /// "None" only where rivals were sought.

@@ -42,7 +42,7 @@ impl Report<'_> {
                 div class={ "verdict " (verdict.label().to_lowercase()) } role="status" {
                     strong { span aria-hidden="true" { (verdict.sign()) " " } (verdict.label()) }
                     ul {
-                        li { (verdict.advice()) }
+                        li { (verdict.advice(record.pose_statement)) }
                         @for reason in &record.reasons {
                             li { (printable(&sentence(reason))) }
                         }

@@ -1,18 +1,25 @@
-//! The question which parts of a crash model are matched, where one of them is plainly the stamped one.
+//! The question which parts of a crash model are matched: before a match, where one of them is plainly the stamped one,
+//! and after it, where the stamped part fits several.
 
-use egui::{Label, Ui};
+use egui::{Button, Label, Ui, vec2};
 
-use crate::app::{AppState, Command, PartCommand};
+use crate::app::{AppState, Command, MatchResult, PartCommand, PartRef};
+use crate::assess::Reason;
 use crate::role::Role;
-use crate::ui::widgets::card;
+use crate::ui::theme::ROW;
+use crate::ui::widgets::{caption, card};
 
-/// Names the part that is most like the stamped part, with a button for it and one for all.
+/// Parts that have a button each.
+const MOST: usize = 4;
+
+/// Names the part that is most like the stamped part, with a button for it and one for all. Of several that are equally
+/// alike nothing tells yet which is meant, or of which hand they are: they have no button.
 pub fn part_question_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let Some(more) = state.part_question() else {
         return;
     };
     card(ui, |ui| {
-        let title = state.document.part_title(more.part);
+        let title = more.title(&state.document);
         let n_used = more.n_used;
         let mut parts = state.document.parts.iter();
         let is_full = parts.all(|(_, part)| part.as_ref().is_none_or(|part| part.level.is_none()));
@@ -26,12 +33,63 @@ pub fn part_question_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comman
         );
         ui.add(Label::new(text).wrap());
         ui.horizontal_wrapped(|ui| {
-            if ui.button("Match only this").clicked() {
-                commands.push(PartCommand::UseOnly(more.part).into());
+            if let Some(part) = more.single()
+                && ui.button("Match only this").clicked()
+            {
+                commands.push(PartCommand::UseOnly(part).into());
             }
             if ui.button("Use all").clicked() {
                 commands.push(PartCommand::UseAll(Role::Crash).into());
             }
         });
     });
+}
+
+/// Of a result that fits several crash parts about as well: a button for each, which chooses it and matches.
+pub fn alike_parts_ui(
+    ui: &mut Ui,
+    state: &AppState,
+    result: &MatchResult,
+    commands: &mut Vec<Command>,
+) {
+    let mut reasons = result.run.assessment.reasons.iter();
+    let Some(others) = reasons.find_map(|reason| match reason {
+        Reason::AlikeParts { ids } => Some(ids),
+        _ => None,
+    }) else {
+        return;
+    };
+    let matched = state
+        .document
+        .part(Role::Crash)
+        .map(|crash| &crash.facts.used);
+    // Several that are matched together are no one part.
+    let matched = matched.filter(|used| used.len() == 1);
+    let ids: Vec<u64> = matched
+        .into_iter()
+        .flatten()
+        .chain(others)
+        .copied()
+        .collect();
+    ui.add_space(4.0);
+    ui.add_enabled_ui(state.can_match().is_ok(), |ui| {
+        for &id in ids.iter().take(MOST) {
+            let part = PartRef {
+                role: Role::Crash,
+                id,
+            };
+            let title = state.document.part_title(part);
+            let button = Button::new(&title).truncate().min_size(vec2(0.0, ROW));
+            let help = format!("Match with {title} and no other part");
+            if ui.add(button).on_hover_text(help).clicked() {
+                commands.push(PartCommand::MatchOnly(part).into());
+            }
+        }
+    });
+    if ids.len() > MOST {
+        caption(
+            ui,
+            format!("… and {} more in the list of section 1", ids.len() - MOST),
+        );
+    }
 }

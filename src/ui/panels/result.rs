@@ -3,6 +3,7 @@
 use egui::{Button, RichText, Ui, vec2};
 
 use super::explain;
+use super::part_question::alike_parts_ui;
 use crate::app::{
     Action, AppState, Axis, Command, ExportCommand, MatchCommand, MatchResult, Section,
 };
@@ -40,6 +41,7 @@ pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
         if state.document.current_result().is_some() {
             verdict_ui(ui, state, result, commands);
+            alike_parts_ui(ui, state, result, commands);
             if !state.is_unit_in_doubt() {
                 figures_ui(ui, state, result);
                 alternatives_ui(ui, state, result, commands);
