@@ -153,11 +153,7 @@ impl AppState {
                 self.view.tab = BottomTab::Mapping;
             }
             FollowUp::SweepBegun => self.view.tab = BottomTab::Sweep,
-            FollowUp::SweepEnded => {
-                if let Some(sweep) = self.matching.sweep(&self.document) {
-                    self.reduce.keep_sweep_levels(&self.document, sweep);
-                }
-            }
+            FollowUp::SweepEnded => self.keep_sweep_levels(),
             FollowUp::ComparisonEnded => {
                 let stamp = self.document.stamp();
                 self.inspect.give_up_comparing(stamp);
@@ -177,6 +173,12 @@ impl AppState {
             FollowUp::Quit => return self.leave(),
         }
         Vec::new()
+    }
+
+    fn keep_sweep_levels(&mut self) {
+        if let Some(sweep) = self.matching.sweep(&self.document) {
+            self.reduce.keep_sweep_levels(&self.document, sweep);
+        }
     }
 
     fn match_chosen(&mut self) -> Vec<Effect> {

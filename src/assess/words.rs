@@ -66,11 +66,7 @@ impl Reason {
             Self::SeveralParts {
                 n_parts,
                 size_ratio,
-            } => format!(
-                "the crash side holds {}, together about {} × larger than the stamped part: choose the part",
-                counted(*n_parts, "part"),
-                rounded(*size_ratio)
-            ),
+            } => several_parts(*n_parts, *size_ratio),
             Self::DifferentUnits { size_ratio, unit } => different_units(*size_ratio, *unit),
             Self::SizesFarApart { size_ratio } => sizes_far_apart(*size_ratio),
             Self::PairScale { scale } => {
@@ -80,22 +76,11 @@ impl Reason {
                 "neither part contains the other: {} overlap",
                 both_overlaps(*source, *target)
             ),
-            Self::Elsewhere { share } => format!(
-                "{} of the smaller part lies neither on the other part nor beyond its borders, and neither borders nor \
-                 holes confirm the pose",
-                percent(*share)
-            ),
+            Self::Elsewhere { share } => elsewhere(*share),
             Self::Sliding {
                 motion,
                 held_across,
-            } => match held_across.filter(|held| *held >= WORTH_TELLING) {
-                Some(held) => format!(
-                    "{}, and only {} of the outlines across it lie together",
-                    motion.words(),
-                    percent(held)
-                ),
-                None => motion.words(),
-            },
+            } => sliding(motion, *held_across),
             Self::Uncertain { by, limit, along } => {
                 let [by, limit] = lengths.compared([*by, *limit]);
                 let along = along.words();
@@ -469,6 +454,33 @@ fn different_units(size_ratio: f64, unit: UnitGuess) -> String {
         unit.source.plural(),
         unit.target.plural()
     )
+}
+
+fn several_parts(n_parts: usize, size_ratio: f64) -> String {
+    format!(
+        "the crash side holds {}, together about {} × larger than the stamped part: choose the part",
+        counted(n_parts, "part"),
+        rounded(size_ratio)
+    )
+}
+
+fn elsewhere(share: f64) -> String {
+    format!(
+        "{} of the smaller part lies neither on the other part nor beyond its borders, and neither borders nor holes \
+         confirm the pose",
+        percent(share)
+    )
+}
+
+fn sliding(motion: &FreeMotion, held_across: Option<f64>) -> String {
+    match held_across.filter(|held| *held >= WORTH_TELLING) {
+        Some(held) => format!(
+            "{}, and only {} of the outlines across it lie together",
+            motion.words(),
+            percent(held)
+        ),
+        None => motion.words(),
+    }
 }
 
 fn sizes_far_apart(size_ratio: f64) -> String {
