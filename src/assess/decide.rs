@@ -61,7 +61,8 @@ pub(super) fn decide(assessment: &mut Assessment, grounds: &Grounds<'_>) {
     let several = several_parts(assessment, settings.n_target_parts);
     let read = read_errors(settings);
     let sizes = || sizes_far_apart(assessment).filter(|_| several.is_none());
-    if let Some(units) = unit(assessment).or_else(sizes) {
+    let unit = unit(assessment, settings.n_target_parts);
+    if let Some(units) = unit.or_else(sizes) {
         // Whatever lies on the wrong size by chance is no evidence of pose and shape.
         assessment.verdict = units.severity();
         assessment.reasons = several.into_iter().chain([units]).chain(read).collect();
@@ -212,12 +213,12 @@ fn read_errors(settings: &AssessSettings) -> Option<Reason> {
     })
 }
 
-fn unit(assessment: &Assessment) -> Option<Reason> {
+/// Several parts that are smaller together than the source are in another unit, but their size does not tell in which.
+fn unit(assessment: &Assessment, n_parts: usize) -> Option<Reason> {
     let check = &assessment.scale_check;
     let size_ratio = check.size_ratio;
-    check
-        .unit
-        .map(|unit| Reason::DifferentUnits { size_ratio, unit })
+    let unit = check.unit.filter(|_| n_parts <= 1 || size_ratio > 1.0);
+    unit.map(|unit| Reason::DifferentUnits { size_ratio, unit })
 }
 
 /// Sizes that differ by far more than parts that belong together, by the factor of no unit that is known.

@@ -295,10 +295,15 @@ impl Refined {
     /// where the parts were trimmed differently, enough of the borders hold this pose, and no hole lies much farther
     /// from its counterpart than under the winner.
     fn is_held_as_well(&self, winner: &Self, within: f64) -> bool {
+        // Springback moves a hole, and not far.
+        let moved = winner.worst_hole.min(MUCH_FARTHER * within);
+        let farthest = within.max(winner.worst_hole).max(MUCH_FARTHER * moved);
         let has_its_holes = self.n_holes >= winner.n_holes
-            && self.worst_hole <= within.max(MUCH_FARTHER * winner.worst_hole)
+            && self.worst_hole <= farthest
             && self.missing <= winner.missing + self.grain;
-        let are_trimmed_alike = winner.held >= TRIMMED_ALIKE * winner.alike;
+        // Holes that were not pierced yet are no trim.
+        let together = winner.held + winner.missing;
+        let are_trimmed_alike = together >= TRIMMED_ALIKE * winner.alike;
         !are_trimmed_alike && self.held >= HELD_BY_OTHERS && has_its_holes
     }
 

@@ -305,6 +305,28 @@ fn that_several_parts_are_matched_as_one_comes_before_their_size() {
 }
 
 #[test]
+fn the_size_of_several_parts_names_no_unit() {
+    let target = pan(9.0, 0.0, everywhere);
+    let [source, target] = [&target, &target].map(|mesh| Surface::new(mesh, "source").unwrap());
+    let mut outcome = matched(&source, &target);
+    // Parts in metres that are three times as large together as the source.
+    let size_ratio = 0.003;
+    (outcome.scale_check.size_ratio, outcome.scale_check.unit) =
+        (size_ratio, guess_unit(size_ratio));
+    assert!(outcome.scale_check.unit.is_some());
+    let reasons = |n_target_parts| {
+        let settings = AssessSettings {
+            n_target_parts,
+            ..AssessSettings::default()
+        };
+        let assessed = assess(&source, &target, &outcome, &settings, &Monitor::silent());
+        assessed.unwrap().reasons
+    };
+    assert!(matches!(reasons(1)[..], [Reason::DifferentUnits { .. }]));
+    assert_eq!(reasons(5)[..], [Reason::SizesFarApart { size_ratio }]);
+}
+
+#[test]
 fn sizes_far_apart_are_a_reason_where_no_unit_is_known() {
     let target = pan(9.0, 0.0, everywhere);
     for (factor, words) in [(1e-4, "1e4"), (1.0 / 80.0, "80.0"), (1e4, "1e4")] {

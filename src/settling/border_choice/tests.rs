@@ -92,4 +92,11 @@ fn outlines_that_lie_apart_under_the_winner_too_do_not_distinguish_a_pose() {
     };
     assert!(off(0.64, 2.8).is_held_as_well(&off(0.77, 1.7), within));
     assert!(!off(0.64, 3.6).is_held_as_well(&off(0.77, 1.7), within));
+    assert!(!off(0.64, 37.0).is_held_as_well(&off(0.77, 22.0), within));
+    // What holes that one part lacks take from the borders held is no trim.
+    let unpierced = |held| Refined {
+        missing: 0.11,
+        ..refined(held, 0.89, 0)
+    };
+    assert!(!unpierced(0.75).is_held_as_well(&unpierced(0.78), within));
 }
