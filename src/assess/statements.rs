@@ -18,7 +18,7 @@ const LEFT: f64 = 0.1;
 /// Outlines lie together if this share of those beside others does.
 const ALL_TOGETHER: f64 = 0.9;
 /// Outlines of which no more runs across a motion do not resist it.
-const LEAST_ACROSS: f64 = 0.02;
+const HARDLY_ACROSS: f64 = 0.02;
 
 /// How far the pose may be off, and whether the shapes are one.
 pub(super) struct Statements {
@@ -130,7 +130,7 @@ impl<'a> Compared<'a> {
             let limit = TOGETHER * borders.limit(&self.tolerance);
             borders.across_within(&met.fit.borders, limit, motion)
         };
-        (all > LEAST_ACROSS).then(|| self.met.as_ref().map_or(0.0, held) / all)
+        (all > HARDLY_ACROSS).then(|| self.met.as_ref().map_or(0.0, held) / all)
     }
 
     fn shape(&self, settings: &AssessSettings) -> ShapeStatement {
