@@ -257,8 +257,9 @@ fn elsewhere(shape: &ShapeStatement) -> Option<Reason> {
         || borders.offset.is_some() && borders.other_trim.is_none();
     let overhang = shape.overhang?;
     let lies_elsewhere = shape.met < OVERHANGS && !only_overhangs(shape.met, overhang);
-    let is_told = shape.met < ENOUGH_MET || is_confirmed;
-    (lies_elsewhere && !is_told).then_some(Reason::Elsewhere {
+    // Where less meets, `overlap` says so.
+    let is_open = shape.met >= ENOUGH_MET && !is_confirmed;
+    (lies_elsewhere && is_open).then_some(Reason::Elsewhere {
         share: 1.0 - shape.met - overhang,
     })
 }

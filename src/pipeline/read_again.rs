@@ -32,6 +32,9 @@ impl<'a> ReadAgain<'a> {
         file: &ReadFile,
         monitor: &Monitor,
     ) -> Result<FileBytes, PipelineError> {
+        let settings = &self.part.settings.read;
+        let text = formats::read_text(&*self.from, &file.path, settings, monitor)?;
+        // Behind the text, so that no change between the two is missed.
         if let Some(read) = file.hash {
             let now = FileHash::of_file(&*self.from, &file.path, monitor)
                 .map_err(|error| FormatError::open(&file.path, &error))?;
@@ -39,8 +42,7 @@ impl<'a> ReadAgain<'a> {
                 return Err(PipelineError::Changed(file.path.clone()));
             }
         }
-        let read = &self.part.settings.read;
-        Ok(formats::read_text(&*self.from, &file.path, read, monitor)?)
+        Ok(text)
     }
 
     /// Where the files are read.

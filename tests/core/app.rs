@@ -17,8 +17,9 @@ use shapematch::registration::starts::{Start, StartKind};
 use shapematch::registration::{Alternative, MatchOutcome};
 use shapematch::report::MatrixForm;
 use shapematch::role::{PerRole, Role};
-use shapematch::samples::{self, SamplePair, SamplePart, SampleSettings, SampleVariant};
+use shapematch::samples::SampleVariant;
 
+use super::bracket::write_bracket;
 use super::find_parts::really;
 use super::match_starts::{live_iteration, running_start};
 
@@ -63,19 +64,6 @@ fn model(n: u32, size: f64, formed: bool) -> Model {
         }
     }
     model
-}
-
-/// The generated bracket, written into a folder: `crash.k`, `stamped.dynain` and its truth.
-pub fn write_bracket(folder: &Path, variant: SampleVariant) -> SamplePair {
-    let pair = samples::generate(&SampleSettings {
-        part: SamplePart::Bracket,
-        variant,
-        ..SampleSettings::default()
-    });
-    for file in samples::files(&pair) {
-        std::fs::write(folder.join(file.name), file.bytes).unwrap();
-    }
-    pair
 }
 
 /// A model of three parts, of which 22 is the strip that is stamped.

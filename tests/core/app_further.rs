@@ -23,8 +23,9 @@ use shapematch::role::{PerRole, Role};
 use shapematch::samples::SampleVariant;
 use shapematch::units::{LengthUnit, Units};
 
-use super::app::{Window, write_bracket};
+use super::app::Window;
 use super::app_mapping::real;
+use super::bracket::write_bracket;
 
 /// Halves of the bracket overlap by so much, so that no element lies between them.
 const LAP: f64 = 3.0;

@@ -8,8 +8,9 @@ use shapematch::pipeline::map::{CheckRecord, PoseOrigin};
 use shapematch::role::Role;
 use shapematch::samples::SampleVariant;
 
-use super::app::{Window, write_bracket};
+use super::app::Window;
 use super::app_mapping::{output_input, real};
+use super::bracket::write_bracket;
 
 fn loaded(folder: &std::path::Path) -> Window {
     write_bracket(folder, SampleVariant::Plain);

@@ -14,7 +14,8 @@ use shapematch::pipeline::project::Project;
 use shapematch::role::{PerRole, Role};
 use shapematch::samples::SampleVariant;
 
-use super::app::{Window, write_bracket};
+use super::app::Window;
+use super::bracket::write_bracket;
 
 pub(super) fn real(kind: JobKind) -> Result<JobOutput, String> {
     let done = PipelineRunner.run(kind, &Monitor::silent());

@@ -21,7 +21,8 @@ use shapematch::pipeline::sweep::SweepSettings;
 use shapematch::role::{PerRole, Role};
 use shapematch::samples::SampleVariant;
 
-use super::app::{Window, write_bracket};
+use super::app::Window;
+use super::bracket::write_bracket;
 
 thread_local! {
     /// Every job that the window asked for.

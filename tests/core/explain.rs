@@ -9,7 +9,8 @@ use shapematch::role::Role;
 use shapematch::samples::SampleVariant;
 use shapematch::text::Lengths;
 
-use super::app::{Window, write_bracket};
+use super::app::Window;
+use super::bracket::write_bracket;
 
 #[test]
 fn the_overlap_follows_each_move_with_its_change() {

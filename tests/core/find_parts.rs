@@ -11,7 +11,8 @@ use shapematch::monitor::Monitor;
 use shapematch::role::Role;
 use shapematch::samples::SampleVariant;
 
-use super::app::{Window, write_bracket};
+use super::app::Window;
+use super::bracket::{write_bracket, write_twice};
 
 /// Does a job as the worker does.
 pub fn really(kind: JobKind) -> Result<JobOutput, String> {
@@ -105,17 +106,10 @@ fn one_thread_and_sixteen_give_the_same_match_and_verdict() {
     assert_eq!(run(1), run(16));
 }
 
-/// A deck that has the parts of the bracket's car, and its own part once more somewhere else.
-const TWICE: &str = include_str!("../data/twice.k");
-
-/// The folder of that deck and of the stamped part.
+/// The folder of a deck that has the part twice and of the stamped part.
 fn twice() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    write_bracket(folder.path(), SampleVariant::Plain);
-    let [crash, own] = ["crash.k", "own.k"].map(|name| folder.path().join(name));
-    std::fs::rename(crash, own).unwrap();
-    write_bracket(folder.path(), SampleVariant::WholeModel);
-    std::fs::write(folder.path().join("twice.k"), TWICE).unwrap();
+    write_twice(folder.path());
     folder
 }
 

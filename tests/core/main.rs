@@ -13,6 +13,8 @@ mod app_meanwhile;
 mod assess;
 mod autosave;
 mod border_deviation;
+#[path = "../bracket.rs"]
+mod bracket;
 mod cancel;
 mod cli;
 mod deck_out;

@@ -466,7 +466,7 @@ fn files_that_moved_together_are_asked_for_once() {
 #[test]
 fn a_mapping_is_there_again_when_its_project_is_opened() {
     let folder = tempfile::tempdir().unwrap();
-    let pair = super::app::write_bracket(folder.path(), SampleVariant::Plain);
+    let pair = super::bracket::write_bracket(folder.path(), SampleVariant::Plain);
     let path = folder.path().join("a.shapematch");
     let mut window = Window::real();
     for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {

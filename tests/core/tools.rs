@@ -10,7 +10,8 @@ use shapematch::app::{Action, FileCommand, PartCommand};
 use shapematch::role::Role;
 use shapematch::samples::SampleVariant;
 
-use super::app::{Window, write_bracket};
+use super::app::Window;
+use super::bracket::write_bracket;
 use super::find_parts::really;
 
 /// Part id of the sheet in the generated stamped file.

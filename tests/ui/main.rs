@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may stop at the first surprise")]
 
+#[path = "../bracket.rs"]
+mod bracket;
 mod distance;
 mod exports;
 mod follow;

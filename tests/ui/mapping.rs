@@ -12,10 +12,11 @@ use shapematch::app::{
 use shapematch::pipeline::map::WriteKind;
 use shapematch::pipeline::outputs::Output;
 use shapematch::role::Role;
-use shapematch::samples::{self, SamplePart, SampleSettings};
+use shapematch::samples::SampleVariant;
 use shapematch::ui::Shell;
 use shapematch::ui::theme::Palette;
 
+use super::bracket::write_bracket;
 use super::layout::{dismiss_toasts, faults, point_at_crash_part, texts};
 use super::project::{drawn, picture};
 use super::story::{click, finish, matched, window};
@@ -241,13 +242,7 @@ fn matched_bracket_in(
     mut window: Harness<'static, Shell>,
     folder: &Path,
 ) -> Harness<'static, Shell> {
-    let pair = samples::generate(&SampleSettings {
-        part: SamplePart::Bracket,
-        ..SampleSettings::default()
-    });
-    for file in samples::files(&pair) {
-        std::fs::write(folder.join(file.name), file.bytes).expect("a folder");
-    }
+    write_bracket(folder, SampleVariant::Plain);
     for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
         let (paths, role) = (vec![folder.join(name)], Some(role));
         run(&mut window, FileCommand::Open { paths, role });

@@ -1,7 +1,6 @@
 //! A deck of five thousand parts: only what is seen is laid out, and the keys reach the rest.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
 use egui::Key;
 use egui::accesskit::Role as Kind;
@@ -10,9 +9,9 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use shapematch::app::{FileCommand, PartCommand, PartRef};
 use shapematch::assess::Verdict;
 use shapematch::role::Role;
-use shapematch::samples::{self, SamplePart, SampleSettings, SampleVariant};
 use shapematch::ui::Shell;
 
+use super::bracket::write_twice;
 use super::layout::texts;
 use super::story::{click, finish, window};
 
@@ -157,25 +156,6 @@ fn five_thousand_parts_are_listed_filtered_and_walked_through() {
         .part(Role::Crash)
         .expect("loaded");
     assert_eq!(part.facts.used.len(), 1);
-}
-
-/// Writes the stamped bracket, and a car that has its part twice.
-fn write_twice(folder: &Path) {
-    let write = |variant| {
-        let pair = samples::generate(&SampleSettings {
-            part: SamplePart::Bracket,
-            variant,
-            ..SampleSettings::default()
-        });
-        for file in samples::files(&pair) {
-            std::fs::write(folder.join(file.name), file.bytes).unwrap();
-        }
-    };
-    write(SampleVariant::Plain);
-    std::fs::rename(folder.join("crash.k"), folder.join("own.k")).unwrap();
-    write(SampleVariant::WholeModel);
-    let deck = include_str!("../data/twice.k");
-    std::fs::write(folder.join("twice.k"), deck).unwrap();
 }
 
 #[test]

@@ -15,9 +15,10 @@ use shapematch::app::{
 use shapematch::geometry::{Similarity, Vector3};
 use shapematch::jobs::{JobKey, PartSource};
 use shapematch::role::Role;
-use shapematch::samples::{self, SamplePart, SampleSettings};
+use shapematch::samples::SampleVariant;
 use shapematch::ui::Shell;
 
+use super::bracket::write_bracket;
 use super::layout::{dismiss_toasts, texts};
 use super::story::{click, finish, window};
 
@@ -39,13 +40,7 @@ impl egui::DroppedFile for Dropped {
 
 /// The bracket's files: crash, stamped.
 fn files(folder: &Path) -> [PathBuf; 2] {
-    let pair = samples::generate(&SampleSettings {
-        part: SamplePart::Bracket,
-        ..SampleSettings::default()
-    });
-    for file in samples::files(&pair) {
-        std::fs::write(folder.join(file.name), file.bytes).unwrap();
-    }
+    write_bracket(folder, SampleVariant::Plain);
     ["crash.k", "stamped.dynain"].map(|name| folder.join(name))
 }
 
