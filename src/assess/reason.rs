@@ -161,6 +161,14 @@ impl Reason {
         )
     }
 
+    /// Ids of other parts of the target's model that fit about as well, if one of the reasons names them.
+    pub fn alike_parts(reasons: &[Self]) -> Option<&[u64]> {
+        reasons.iter().find_map(|reason| match reason {
+            Self::AlikeParts { ids } => Some(&ids[..]),
+            _ => None,
+        })
+    }
+
     /// The verdict that this reason alone would give.
     pub fn severity(&self) -> Verdict {
         match self {

@@ -17,7 +17,7 @@ impl Report<'_> {
                 (self.uncertainty(stated))
             }
             h3 { "Poses that fit nearly as well" }
-            @if let Some(ids) = self.alike_parts() {
+            @if let Some(ids) = Reason::alike_parts(&self.record.reason_details) {
                 p {
                     "On other crash parts: the stamped part fits " (parts_by_id(ids)) " about as well. On the crash \
                      part of this report:"
@@ -53,15 +53,6 @@ impl Report<'_> {
                 div.scale { (charts::plain_legend(scale, &lengths.axis("the pose may be off by")) ) }
             }
         }
-    }
-
-    /// Ids of the other crash parts that the stamped part fits about as well.
-    fn alike_parts(&self) -> Option<&[u64]> {
-        let mut reasons = self.record.reason_details.iter();
-        reasons.find_map(|reason| match reason {
-            Reason::AlikeParts { ids } => Some(&ids[..]),
-            _ => None,
-        })
     }
 
     /// "None" only where rivals were sought.

@@ -52,11 +52,7 @@ pub fn alike_parts_ui(
     result: &MatchResult,
     commands: &mut Vec<Command>,
 ) {
-    let mut reasons = result.run.assessment.reasons.iter();
-    let Some(others) = reasons.find_map(|reason| match reason {
-        Reason::AlikeParts { ids } => Some(ids),
-        _ => None,
-    }) else {
+    let Some(others) = Reason::alike_parts(&result.run.assessment.reasons) else {
         return;
     };
     let matched = state
