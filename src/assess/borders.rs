@@ -32,6 +32,9 @@ const ANOTHER_KIND: f64 = 4.0;
 const ONE_MIDDLE: f64 = 0.5;
 /// Over a curved sheet the middle of a hole floats by up to this share of its radius.
 const FLOATING: f64 = 0.5;
+/// A hole belongs to a layer behind another one of its part if that lies at most this share of the way to the middle of
+/// the hole away from the place of the other part.
+const BEHIND: f64 = 0.5;
 /// A place is not paired where its own part has a border nearer to the counterpart than this share of the distance
 /// between the two.
 const MUTUAL: f64 = 0.7;
@@ -473,9 +476,10 @@ impl Borders {
         let back = pose.inverse();
         let left = of_target.iter().zip(&is_used).filter(|(_, used)| !**used);
         let left: Vec<Hole> = left.map(|(hole, _)| *hole).collect();
+        let (source, target) = ((surfaces[0], &back), (surfaces[1], &still));
         let [(of_source, mut open_in_target), (of_target, open_in_source)] = [
-            solid_at(alone, surfaces[1], &still, 1.0, near),
-            solid_at(left, surfaces[0], &back, pose.scale, near),
+            solid_at(alone, source, target, near),
+            solid_at(left, target, source, near),
         ];
         self.missing = [of_source, of_target];
         // Where neither part is solid at the middle of the other's hole, the holes lie in each other.
@@ -540,27 +544,36 @@ fn overlaps(hole: &Hole, other: &Hole) -> bool {
     is_in_one_sheet && (crosses || off < ONE_MIDDLE * small) && large < ANOTHER_KIND * small
 }
 
-/// The holes at whose middle the other part is solid, and the rest.
+/// The holes of a part at whose middle the other one is solid, and the rest. Each part comes with the motion to its
+/// frame from that of the holes. Holes of a layer that lies behind another one of their own part, as where parts of an
+/// assembly are joined, say nothing of what lies on that and are left out.
 fn solid_at(
-    holes: Vec<Hole>,
-    other: &Surface,
-    other_from_target: &Similarity,
-    unit: f64,
+    mut holes: Vec<Hole>,
+    (own, own_from_holes): (&Surface, &Similarity),
+    (other, other_from_holes): (&Surface, &Similarity),
     near: f64,
 ) -> (Vec<Hole>, Vec<Hole>) {
-    let is_solid = |hole: &Hole| {
-        let at = other_from_target.apply(&hole.center);
-        let reach = (FLOATING * hole.radius + near) / unit;
-        let hit = other.bvh().closest(&at, reach, None, None);
-        hit.is_some_and(|hit| {
-            let away = (at - hit.point).norm();
-            let facing = other_from_target
-                .rotate(&hole.normal)
-                .dot(&other.normal_at(&hit));
-            !other.is_on_border(&hit) && facing.abs() > PARALLEL && away < reach
+    let solid_place = |hole: &Hole| {
+        let at = other_from_holes.apply(&hole.center);
+        let reach = (FLOATING * hole.radius + near) * other_from_holes.scale;
+        let hit = other.bvh().closest(&at, reach, None, None)?;
+        let facing = other_from_holes
+            .rotate(&hole.normal)
+            .dot(&other.normal_at(&hit));
+        let is_solid = !other.is_on_border(&hit) && facing.abs() > PARALLEL;
+        is_solid.then(|| other_from_holes.inverse().apply(&hit.point))
+    };
+    let is_behind = |hole: &Hole| {
+        solid_place(hole).is_some_and(|place| {
+            let reach = BEHIND * (place - hole.center).norm() * own_from_holes.scale;
+            let at = own_from_holes.apply(&place);
+            own.bvh().closest(&at, reach, None, None).is_some()
         })
     };
-    holes.into_iter().partition(is_solid)
+    holes.retain(|hole| !is_behind(hole));
+    holes
+        .into_iter()
+        .partition(|hole| solid_place(hole).is_some())
 }
 
 fn hole(border: &BorderCurve, target_from_border: &Similarity) -> Hole {

@@ -1,5 +1,6 @@
 //! Indexed triangle meshes.
 
+use super::groups::groups;
 use super::{Aabb, Point3, Similarity, Vector3};
 
 /// Why positions and triangles do not make a [`TriMesh`].
@@ -124,6 +125,21 @@ impl TriMesh {
     /// Area of the whole mesh. O(triangles), summed in index order.
     pub fn area(&self) -> f64 {
         (0..self.n_triangles()).map(|t| self.triangle_area(t)).sum()
+    }
+
+    /// Component number of every triangle (connected over vertices), counted from 0 in order of each component's first
+    /// triangle, and how many there are. Nearly O(triangles).
+    pub fn components(&self) -> (Vec<u32>, usize) {
+        let mut first_at = vec![u32::MAX; self.n_vertices()];
+        let corners = (0_u32..).zip(self.triangles.as_flattened());
+        let joined = corners.filter_map(|(corner, &vertex)| {
+            let (triangle, first) = (corner / 3, &mut first_at[vertex as usize]);
+            if *first == u32::MAX {
+                *first = triangle;
+            }
+            (*first != triangle).then_some([*first, triangle])
+        });
+        groups(self.n_triangles(), joined)
     }
 
     /// Area-weighted centroid of the surface; mean of the vertices if there is no area.

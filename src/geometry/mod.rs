@@ -7,6 +7,7 @@ pub mod camera;
 pub(crate) mod chunks;
 mod clean;
 pub(crate) mod cracks;
+mod groups;
 mod landmarks;
 mod merged;
 mod mesh;

@@ -3,6 +3,7 @@
 use super::TriMesh;
 use super::chunks::{for_chunks, map_chunks};
 use super::cracks::without_cracks;
+use super::groups::groups;
 use crate::monitor::{Cancelled, Monitor};
 
 /// Edge adjacency of a mesh. Edges are undirected; an edge with one triangle is a border edge unless it is a side
@@ -73,36 +74,10 @@ impl Topology {
     /// Component number of every triangle (connected over edges), counted from 0 in order of each
     /// component's first triangle, and how many there are.
     pub fn components(&self, n_triangles: usize) -> (Vec<u32>, usize) {
-        let mut parent: Vec<u32> = (0..n_triangles as u32).collect();
-        for edge in 0..self.edges.len() {
-            let around = self.triangles_of(edge);
-            for &other in &around[1..] {
-                let (a, b) = (find(&mut parent, around[0]), find(&mut parent, other));
-                // The smaller root wins, so a component's root is its first triangle.
-                parent[a.max(b) as usize] = a.min(b);
-            }
-        }
-        let mut number = vec![u32::MAX; n_triangles];
-        let mut count = 0;
-        for t in 0..n_triangles as u32 {
-            let root = find(&mut parent, t) as usize;
-            if number[root] == u32::MAX {
-                number[root] = count;
-                count += 1;
-            }
-            number[t as usize] = number[root];
-        }
-        (number, count as usize)
+        let around = (0..self.edges.len()).map(|edge| self.triangles_of(edge));
+        let joined = around.flat_map(|around| around[1..].iter().map(|&other| [around[0], other]));
+        groups(n_triangles, joined)
     }
-}
-
-fn find(parent: &mut [u32], mut node: u32) -> u32 {
-    while parent[node as usize] != node {
-        let above = parent[parent[node as usize] as usize];
-        parent[node as usize] = above;
-        node = above;
-    }
-    node
 }
 
 /// The sides of all triangles, listed at their smaller vertices.

@@ -32,6 +32,7 @@ pub use icp::{Floor, Metric, PairWith, RejectRules, Selection, Stage, Terminatio
 pub use input::MatchInput;
 pub use match_surfaces::match_surfaces;
 pub use multi_start::starts;
+pub(crate) use multi_start::starts::axes_on_axes;
 pub use multi_start::starts::{StartKind, StartMethod, StartSettings, align_surface_normals};
 pub use observer::{MatchMonitor, Observer};
 pub use point_pairs::{PairDoubt, PointPairFit, fit_point_pairs};
@@ -41,6 +42,7 @@ pub use result::{
 };
 pub use scale_check::{ScaleCheck, UnitGuess, guess_unit};
 pub use settings::{DataSide, Hand, MatchSettings, Method, Search, limits};
+pub(crate) use surface::principal_frame;
 pub use surface::{Measures, Surface};
 pub(crate) use wide::is_piece;
 pub use wide::{WideFind, WideSearch};

@@ -331,7 +331,7 @@ fn border_marks(mesh: &TriMesh, border_edges: &BorderEdges) -> (Vec<u8>, Vec<boo
 
 /// The centroid with eigenvectors and square roots of the eigenvalues of the surface's covariance, exact over
 /// each triangle.
-fn principal_frame(
+pub(crate) fn principal_frame(
     mesh: &TriMesh,
     vectors: &[Vector3],
     area: f64,

@@ -11,6 +11,7 @@ mod border_choice;
 mod candidate;
 mod chosen_pose;
 mod context;
+mod copies;
 mod free_motion_search;
 mod full_overlap;
 mod holes;
@@ -25,6 +26,7 @@ pub use alternatives::chosen_by_shape;
 pub use border_choice::{OppositeHand, hand_by_borders, held_by_borders};
 pub use chosen_pose::ChosenPose;
 pub use context::PairContext;
+pub use copies::placed_on_copies;
 pub use full_overlap::placed_as_a_whole;
 pub use holes::placed_by_holes;
 pub use pulled_aside::{PulledAside, Remainder, pulled_aside};
@@ -64,6 +66,8 @@ pub fn settle(
     let placed = placed_by_holes(&context, outcome)?;
     take(outcome, placed);
     let placed = placed_as_a_whole(&context, outcome)?;
+    take(outcome, placed);
+    let placed = placed_on_copies(&context, outcome)?;
     take(outcome, placed);
     if let Some(pose) = without_trims(&context, &outcome.target_from_source)? {
         outcome.target_from_source = pose;

@@ -976,6 +976,7 @@ fn every_step_that_moves_a_pose_hears_a_cancel() {
     assert!(chosen_by_shape(&context, &before).is_err());
     assert!(placed_by_holes(&context, &before).is_err());
     assert!(placed_as_a_whole(&context, &before).is_err());
+    assert!(placed_on_copies(&context, &before).is_err());
     assert!(hand_by_borders(&context, &before).is_err());
     assert!(without_trims(&context, pose).is_err());
     assert!(without_bend(&context, pose).is_err());

@@ -167,6 +167,16 @@ fn parts_that_fit_as_well_are_told_and_all_can_be_meant() {
         record["files"]["crash"]["parts"].as_array().unwrap().len(),
         6
     );
+    // Matched as one, they hold the part twice as well, among others that lie on it.
+    assert_eq!(record["verdict"], "check");
+    assert_eq!(record["pose_statement"], "ambiguous");
+    let other = &record["alternatives"][0];
+    let apart = [
+        record["matrix"][0][3].as_f64(),
+        other["matrix"][0][3].as_f64(),
+    ];
+    let apart = (apart[0].unwrap() - apart[1].unwrap()).abs();
+    assert!((apart - 3000.0).abs() < 5.0, "{apart}");
 }
 
 #[test]

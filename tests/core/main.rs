@@ -17,6 +17,7 @@ mod border_deviation;
 mod bracket;
 mod cancel;
 mod cli;
+mod copies;
 mod deck_out;
 mod deviation;
 mod distance;

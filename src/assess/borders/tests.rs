@@ -134,6 +134,35 @@ fn holes_on_different_sides_are_missing_both_ways() {
 }
 
 #[test]
+fn a_hole_behind_another_layer_is_not_missing() {
+    let (source, behind) = (sheet(30, 3), sheet(30, 22));
+    // The second layer has its hole elsewhere, and the first is solid there.
+    let shift = Vector3::new(0.0, 0.0, -1.0);
+    let mut positions = source.mesh().positions().to_vec();
+    let first = positions.len() as u32;
+    positions.extend(behind.mesh().positions().iter().map(|p| p + shift));
+    let mut triangles = source.mesh().triangles().to_vec();
+    triangles.extend(
+        behind
+            .mesh()
+            .triangles()
+            .iter()
+            .map(|t| t.map(|v| first + v)),
+    );
+    let target = Surface::new(&TriMesh::new(positions, triangles).unwrap(), "target").unwrap();
+    let borders = compared(&source, &target);
+    assert_eq!(borders.holes.len(), 1);
+    assert_eq!(borders.missing.each_ref().map(Vec::len), [0, 0]);
+    // On the second layer it is, while the first has the other hole still.
+    let down = Similarity {
+        translation: shift,
+        ..Similarity::identity()
+    };
+    let borders = BorderComparison::new([&source, &target], 1.0, 3.0).at(&down);
+    assert_eq!(borders.missing.each_ref().map(Vec::len), [0, 1]);
+}
+
+#[test]
 fn the_share_of_borders_that_lie_together_leaves_out_those_aside() {
     let (plain, longer) = (sheet(30, 5), sheet(32, 5));
     let borders = compared(&plain, &longer);

@@ -7,6 +7,7 @@ mod surface_normals;
 use serde::{Deserialize, Serialize};
 
 pub use covering::super_fibonacci;
+pub(crate) use frames::axes_on_axes;
 pub use surface_normals::align_surface_normals;
 
 use crate::geometry::{Point3, Pose, Rotation, Similarity};
