@@ -14,8 +14,9 @@ const RAGGED_TURN: f64 = 10.0;
 pub(super) struct BorderCurve {
     points: Vec<Point3>,
     normals: Vec<Vector3>,
-    /// Its middle by length.
+    /// See [`Border::center`].
     pub(super) center: Point3,
+    pub(super) circle_radius: Option<f64>,
     pub(super) length: f64,
     pub(super) is_hole: bool,
 }
@@ -155,6 +156,7 @@ pub(super) fn curves_of(surface: &Surface) -> Vec<BorderCurve> {
                 .collect(),
             normals: vertices.map(|v| surface.vertex_normals()[v]).collect(),
             center: border.center,
+            circle_radius: border.circle_radius,
             length: border.length,
             is_hole: border.is_hole,
         }
@@ -196,6 +198,7 @@ mod tests {
             normals: vec![Vector3::z(); points.len()],
             points,
             center: Point3::origin(),
+            circle_radius: None,
             length: 0.0,
             is_hole: true,
         }

@@ -1,9 +1,14 @@
 //! The borders of a sheet: its trim and its holes.
 
-use super::{BorderEdges, BorderLoop, Point3, TriMesh, Vector3};
+use super::{BorderEdges, BorderLoop, Matrix3, Point3, TriMesh, Vector3, any_perpendicular};
 
 /// The sheet lies around a hole: the way out of it points to the middle with at least this mean cosine.
 const INWARD: f64 = 0.3;
+/// A hole is round if its vertices lie within this share of the radius of one circle. Three always do.
+const ROUND: f64 = 0.1;
+const LEAST_ROUND: usize = 4;
+/// Vertices lie around the centre of their circle if the middle of their edges is at most this share of the radius away.
+const AROUND: f64 = 0.6;
 
 /// One border: a loop of border edges that passes no vertex twice, or a chain of them that ends where three triangles
 /// meet at an edge.
@@ -15,8 +20,11 @@ pub struct Border {
     pub closed: bool,
     /// Length of its edges.
     pub length: f64,
-    /// Middle of its edges, by length.
+    /// Of a round hole the centre of the circle through its vertices, which does not depend on how they are spread over
+    /// it; else the middle of the edges, by length.
     pub center: Point3,
+    /// Radius of that circle.
+    pub circle_radius: Option<f64>,
     /// Whether it is closed and the sheet lies around it. Other borders are outlines.
     pub is_hole: bool,
 }
@@ -55,14 +63,47 @@ impl Border {
             inward -= arm.dot(&outwards);
             whole += arm.norm() * outwards.norm();
         }
+        let is_hole = closed && vertices.len() > 2 && inward > INWARD * whole;
+        let circle = is_hole.then(|| circle(&vertices, mesh, &center)).flatten();
         Self {
-            is_hole: closed && vertices.len() > 2 && inward > INWARD * whole,
+            center: circle.map_or(center, |(center, _)| center),
+            circle_radius: circle.map(|(_, radius)| radius),
+            is_hole,
             vertices,
             closed,
             length,
-            center,
         }
     }
+}
+
+/// Centre and radius of the circle through the vertices of a hole about `middle`, by least squares of the squared
+/// distances (Kåsa 1976); `None` unless it is round. Across the sheet it lies where the middle does.
+fn circle(vertices: &[u32], mesh: &TriMesh, middle: &Point3) -> Option<(Point3, f64)> {
+    if vertices.len() < LEAST_ROUND {
+        return None;
+    }
+    let area: Vector3 = segments(vertices, true, mesh)
+        .map(|[a, b]| (a - middle).cross(&(b - middle)))
+        .sum();
+    let normal = area.try_normalize(0.0)?;
+    let first = any_perpendicular(&normal);
+    let second = normal.cross(&first);
+    let arms = vertices.iter().map(|&v| {
+        let arm = mesh.positions()[v as usize] - middle;
+        [arm.dot(&first), arm.dot(&second)]
+    });
+    let (mut left, mut right) = (Matrix3::zeros(), Vector3::zeros());
+    for [x, y] in arms.clone() {
+        let row = Vector3::new(2.0 * x, 2.0 * y, 1.0);
+        left += row * row.transpose();
+        right += row * (x * x + y * y);
+    }
+    let [x, y, rest] = left.lu().solve(&right)?.into();
+    let radius = (rest + x * x + y * y).sqrt();
+    let is_round = |[a, b]: [f64; 2]| ((a - x).hypot(b - y) - radius).abs() <= ROUND * radius;
+    let is_around = x.hypot(y) <= AROUND * radius;
+    let is_circle = is_around && arms.into_iter().all(is_round);
+    is_circle.then(|| (middle + first * x + second * y, radius))
 }
 
 fn segments<'a>(
@@ -202,6 +243,43 @@ mod tests {
 
     fn edges_of(mesh: &TriMesh) -> BorderEdges {
         BorderEdges::of(mesh, &Topology::of(mesh))
+    }
+
+    #[test]
+    fn the_center_of_a_round_hole_is_that_of_its_circle() {
+        let at =
+            |angle: f64, radius: f64| Point3::new(radius * angle.cos(), radius * angle.sin(), 0.0);
+        // The centre of a hole with these vertices on a circle of radius 5, and how far the middle of its edges is off.
+        let center = |angles: &[f64]| {
+            let n = angles.len() as u32;
+            let positions: Vec<Point3> = [5.0, 20.0]
+                .into_iter()
+                .flat_map(|radius| angles.iter().map(move |&angle| at(angle, radius)))
+                .collect();
+            let cell = |k: u32| {
+                let next = (k + 1) % n;
+                [[k, n + k, n + next], [k, n + next, next]]
+            };
+            let mesh = TriMesh::new(positions, (0..n).flat_map(cell).collect()).unwrap();
+            let normals = vec![Vector3::z(); mesh.n_vertices()];
+            let borders = Border::all(&mesh, &edges_of(&mesh), &normals);
+            let hole = borders.into_iter().find(|border| border.is_hole).unwrap();
+            let middle: Vector3 = hole
+                .segments(&mesh)
+                .map(|[a, b]| nalgebra::center(&a, &b).coords * (b - a).norm() / hole.length)
+                .sum();
+            (hole.center.coords.norm(), middle.norm())
+        };
+        for angles in [
+            [0.0, 0.8, 1.9, 4.0].as_slice(),
+            &[0.0, 0.5, 1.0, 1.5, 2.0, 4.4],
+        ] {
+            let (off, off_by_length) = center(angles);
+            assert!(off < 1e-9 && off_by_length > 0.5, "{off} {off_by_length}");
+        }
+        // Three vertices lie on a circle whatever the hole is.
+        let (off, off_by_length) = center(&[0.0, 1.5, 3.5]);
+        assert!((off - off_by_length).abs() < 1e-9);
     }
 
     #[test]

@@ -13,7 +13,7 @@ const LEAST: usize = 6;
 /// A hole in a sheet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hole {
-    /// Middle of its border.
+    /// Middle of its border, see [`Border::center`].
     pub center: Point3,
     /// Mean distance of the border from the middle.
     pub radius: f64,

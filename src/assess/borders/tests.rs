@@ -78,6 +78,7 @@ fn a_hole_keeps_the_one_that_it_lies_on_whichever_comes_first() {
     let at = |x: f64| Hole {
         center: Point3::new(x, 0.0, 0.0),
         radius: 5.0,
+        circle_radius: None,
         length: 31.0,
         normal: Vector3::z(),
     };
@@ -98,6 +99,7 @@ fn holes_that_overlap_are_moved_or_resized_but_no_pilot_hole_is() {
     let hole = |x: f64, radius: f64| Hole {
         center: Point3::new(x, 0.0, 0.0),
         radius,
+        circle_radius: None,
         length: 0.0,
         normal: Vector3::z(),
     };
@@ -172,4 +174,37 @@ fn the_share_of_borders_that_lie_together_leaves_out_those_aside() {
     assert!((together - 96.0 / 116.0).abs() < 0.03, "{together}");
     assert!((borders.share_within(&left, 3.0) - borders.share()).abs() < 1e-9);
     assert_eq!(Borders::default().share_within(&[], 1.0), 0.0);
+}
+
+/// A plate with a round hole of radius 5 whose vertices lie at these angles.
+fn plate(angles: &[f64]) -> Surface {
+    let n = angles.len() as u32;
+    let ring = |radius: f64| {
+        let at = move |angle: &f64| Point3::new(radius * angle.cos(), radius * angle.sin(), 0.0);
+        angles.iter().map(at)
+    };
+    let cell = |k: u32| {
+        let next = (k + 1) % n;
+        [[k, n + k, n + next], [k, n + next, next]]
+    };
+    let mesh = TriMesh::new(
+        ring(5.0).chain(ring(20.0)).collect(),
+        (0..n).flat_map(cell).collect(),
+    );
+    Surface::new(&mesh.unwrap(), "plate").unwrap()
+}
+
+#[test]
+fn a_round_hole_is_the_same_however_its_vertices_are_spread() {
+    let even: Vec<f64> = (0..24)
+        .map(|k| f64::from(k) * 15.0_f64.to_radians())
+        .collect();
+    let (fine, coarse) = (plate(&even), plate(&[0.0, 0.8, 1.9, 4.0]));
+    for pair in [[&fine, &coarse], [&coarse, &fine]] {
+        let borders = compared(pair[0], pair[1]);
+        let [hole] = &borders.holes[..] else {
+            panic!("{} holes", borders.holes.len());
+        };
+        assert!(hole.off.norm() < 1e-9 && hole.wider < 1e-9, "{hole:?}");
+    }
 }

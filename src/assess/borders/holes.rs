@@ -1,0 +1,166 @@
+//! Holes that both parts have, and those that one lacks.
+
+use super::PARALLEL;
+use crate::assess::border_curve::BorderCurve;
+use crate::geometry::{Aabb, Point3, Similarity, Vector3};
+use crate::registration::Surface;
+use crate::search::ClosestPoint;
+
+/// Holes whose radii differ by more than this factor are not the same hole.
+const SAME_RADIUS: f64 = 1.6;
+/// Of holes that overlap and are not the same, one is a pilot hole or an opening cut later if its radius is so many
+/// times smaller.
+const ANOTHER_KIND: f64 = 4.0;
+/// Such holes lie about one middle if theirs lie apart by less than this share of the smaller radius.
+const ONE_MIDDLE: f64 = 0.5;
+/// Over a curved sheet the middle of a hole floats by up to this share of its radius.
+const FLOATING: f64 = 0.5;
+/// A hole belongs to a layer behind another one of its part if that lies at most this share of the way to the middle of
+/// the hole away from the place of the other part.
+const BEHIND: f64 = 0.5;
+
+/// A hole in the target's frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Hole {
+    pub(in crate::assess) center: Point3,
+    /// Mean distance of its border from the centre.
+    pub(in crate::assess) radius: f64,
+    /// Radius of the circle that a round one is.
+    pub(super) circle_radius: Option<f64>,
+    /// Of its border.
+    pub(super) length: f64,
+    /// Of the sheet around it.
+    pub(crate) normal: Vector3,
+}
+
+/// A hole that both parts have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct HolePair {
+    /// The target's.
+    pub(crate) hole: Hole,
+    /// From its middle to that of the source's.
+    pub(crate) off: Vector3,
+    /// Difference of the radii.
+    pub(in crate::assess) wider: f64,
+}
+
+impl Hole {
+    /// How much its radius is larger than another's. Chords of the few edges of a coarse mesh make a round hole smaller,
+    /// not its circle; a square with a node at each corner only has a circle too.
+    fn wider_than(&self, other: &Self) -> f64 {
+        match (self.circle_radius, other.circle_radius) {
+            (Some(own), Some(others)) => own - others,
+            _ => self.radius - other.radius,
+        }
+    }
+
+    /// What of a shift lies within the sheet: across it the middle of a hole moves with the surface, which is compared
+    /// by itself.
+    pub(in crate::assess) fn within_sheet(&self, shift: &Vector3) -> Vector3 {
+        shift - self.normal * shift.dot(&self.normal)
+    }
+}
+
+impl HolePair {
+    pub(super) fn of(of_source: &Hole, of_target: &Hole) -> Self {
+        Self {
+            hole: *of_target,
+            off: of_source.center - of_target.center,
+            wider: of_source.wider_than(of_target).abs(),
+        }
+    }
+}
+
+/// For each hole of the source the hole of the target of about its size that is the same: of all pairs that lie near
+/// each other the closest first, and of equally close ones the first.
+pub(super) fn partners(of_source: &[Hole], of_target: &[Hole], near: f64) -> Vec<Option<usize>> {
+    let is_same_size = |hole: &Hole, other: &Hole| {
+        let ratio = other.radius / hole.radius;
+        ratio < SAME_RADIUS && ratio * SAME_RADIUS > 1.0
+    };
+    // A perforated sheet has thousands, of which few lie near each other along any axis.
+    let bounds = Aabb::of_points(of_target.iter().map(|hole| &hole.center));
+    let axis = bounds.extents().imax();
+    let mut along: Vec<(f64, usize)> = (of_target.iter().enumerate())
+        .map(|(j, hole)| (hole.center[axis], j))
+        .collect();
+    along.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+    for (i, hole) in of_source.iter().enumerate() {
+        let (reach, at) = (near.max(hole.radius), hole.center[axis]);
+        let first = along.partition_point(|(other, _)| *other <= at - reach);
+        let beside = along[first..].iter();
+        let beside = beside.take_while(|(other, _)| *other < at + reach);
+        let alike = beside.filter(|(_, j)| is_same_size(hole, &of_target[*j]));
+        let off = alike.map(|&(_, j)| ((of_target[j].center - hole.center).norm(), i, j));
+        pairs.extend(off.filter(|(off, ..)| *off < reach));
+    }
+    pairs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    let mut partners = vec![None; of_source.len()];
+    let mut is_used = vec![false; of_target.len()];
+    for (_, i, j) in pairs {
+        if partners[i].is_none() && !is_used[j] {
+            partners[i] = Some(j);
+            is_used[j] = true;
+        }
+    }
+    partners
+}
+
+/// Whether two holes cross each other, or lie about one middle, and are of one kind.
+pub(super) fn overlaps(hole: &Hole, other: &Hole) -> bool {
+    let [small, large] = if hole.radius < other.radius {
+        [hole.radius, other.radius]
+    } else {
+        [other.radius, hole.radius]
+    };
+    let off = (hole.center - other.center).norm();
+    let crosses = off < small + large && off > large - small;
+    let is_in_one_sheet = hole.normal.dot(&other.normal).abs() > PARALLEL;
+    is_in_one_sheet && (crosses || off < ONE_MIDDLE * small) && large < ANOTHER_KIND * small
+}
+
+/// The holes of a part at whose middle the other one is solid, and the rest. Each part comes with the motion to its
+/// frame from that of the holes. Holes of a layer that lies behind another one of their own part, as where parts of an
+/// assembly are joined, say nothing of what lies on that and are left out.
+pub(super) fn solid_at(
+    mut holes: Vec<Hole>,
+    (own, own_from_holes): (&Surface, &Similarity),
+    (other, other_from_holes): (&Surface, &Similarity),
+    near: f64,
+) -> (Vec<Hole>, Vec<Hole>) {
+    let solid_place = |hole: &Hole| {
+        let at = other_from_holes.apply(&hole.center);
+        let reach = (FLOATING * hole.radius + near) * other_from_holes.scale;
+        let hit = other.bvh().closest(&at, reach, None, None)?;
+        let facing = other_from_holes
+            .rotate(&hole.normal)
+            .dot(&other.normal_at(&hit));
+        let is_solid = !other.is_on_border(&hit) && facing.abs() > PARALLEL;
+        is_solid.then(|| other_from_holes.inverse().apply(&hit.point))
+    };
+    let is_behind = |hole: &Hole| {
+        solid_place(hole).is_some_and(|place| {
+            let reach = BEHIND * (place - hole.center).norm() * own_from_holes.scale;
+            let at = own_from_holes.apply(&place);
+            own.bvh().closest(&at, reach, None, None).is_some()
+        })
+    };
+    holes.retain(|hole| !is_behind(hole));
+    holes
+        .into_iter()
+        .partition(|hole| solid_place(hole).is_some())
+}
+
+pub(super) fn hole(border: &BorderCurve, target_from_border: &Similarity) -> Hole {
+    let normal = border.normal().try_normalize(0.0).unwrap_or_default();
+    Hole {
+        center: target_from_border.apply(&border.center),
+        radius: border.radius() * target_from_border.scale,
+        circle_radius: border
+            .circle_radius
+            .map(|radius| radius * target_from_border.scale),
+        length: border.length * target_from_border.scale,
+        normal: target_from_border.rotate(&normal),
+    }
+}
