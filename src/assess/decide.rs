@@ -10,7 +10,7 @@ use super::assessment::Assessment;
 use super::borders::HOLES_THAT_HOLD;
 use super::pose::{PoseKind, PoseStatement};
 use super::reason::Reason;
-use super::shape::{BorderFit, OVERHANGS, ShapeStatement, only_overhangs};
+use super::shape::{BorderFit, OVERHANGS, ShapeReason, ShapeStatement, only_overhangs};
 use super::tolerance::{AssessSettings, ShapeTolerance, UNREMARKABLE};
 use super::verdict::Verdict;
 use crate::registration::starts::StartKind;
@@ -34,6 +34,9 @@ const LEAST_TOGETHER: f64 = 1.0 / 3.0;
 const LEAST_ACROSS: f64 = 2.0 / 3.0;
 /// Parts whose sizes differ by more than this factor are not in one unit, whatever the units are.
 const FAR_APART: f64 = 50.0;
+
+/// Parts of which each has a piece that the other lacks share at least so much of the smaller one.
+const LEAST_SHARED: f64 = 0.35;
 
 /// What a verdict is decided by beside what is measured.
 pub(super) struct Grounds<'a> {
@@ -79,17 +82,18 @@ pub(super) fn decide(assessment: &mut Assessment, grounds: &Grounds<'_>) {
         others_not_sought(outcome),
         uncertainty(assessment),
     ];
+    let hand = hand(assessment, shape, mirrored);
+    let is_open = hand.is_some() || of_pose.iter().any(Option::is_some);
+    let is_one = !is_open && is_held(assessment) && shares_a_piece(shape);
     let of_shape = [
-        hand(assessment, shape, mirrored),
+        hand,
         scale(assessment, most_scaled),
         overlap(assessment, shape),
         elsewhere(shape),
     ];
     let found = of_pose.into_iter().chain(of_shape).chain([read]).flatten();
-    let differences = shape
-        .reasons
-        .iter()
-        .map(|&difference| Reason::Shape { difference });
+    let differences = shape.reasons.iter().filter(|_| !is_one);
+    let differences = differences.map(|&difference| Reason::Shape { difference });
     let mut reasons: Vec<Reason> = found.chain(differences).collect();
     let verdict = reasons.iter().map(Reason::severity).max();
     let verdict = verdict.unwrap_or(Verdict::Good);
@@ -234,15 +238,27 @@ fn scale(assessment: &Assessment, most: f64) -> Option<Reason> {
     ((scale - 1.0).abs() > most).then_some(Reason::PairScale { scale })
 }
 
+/// Whether the surfaces alone hold the part, within its tolerance.
+fn is_held(assessment: &Assessment) -> bool {
+    let is_firm = assessment.pose.as_ref().is_some_and(PoseStatement::is_firm);
+    is_firm && assessment.freedom.motion.is_none()
+}
+
+/// Whether all that speaks against one shape is that little of the parts meets, while the rest of the smaller one lies
+/// beyond the borders of the other. Pieces cut from both ends of one part meet so, and hardly ever two different parts.
+fn shares_a_piece(shape: &ShapeStatement) -> bool {
+    let hardly_meets = matches!(shape.reasons[..], [ShapeReason::HardlyMet { .. }]);
+    let overhangs = |share| only_overhangs(shape.met, share);
+    hardly_meets && shape.met >= LEAST_SHARED && shape.overhang.is_some_and(overhangs)
+}
+
 /// Parts of which each has a large piece that the other lacks, unless the surface they share is one and holds the
 /// pose by itself, and the rest of the smaller part lies beyond the borders of the other.
 fn overlap(assessment: &Assessment, shape: &ShapeStatement) -> Option<Reason> {
     let coverage = &assessment.coverage;
-    let is_firm = assessment.pose.as_ref().is_some_and(PoseStatement::is_firm);
-    let is_held = is_firm && assessment.freedom.motion.is_none();
     let overhangs = shape.overhang;
     let only_overhangs = overhangs.is_some_and(|share| only_overhangs(shape.met, share));
-    let is_one = shape.reasons.is_empty() && only_overhangs && is_held;
+    let is_one = shape.reasons.is_empty() && only_overhangs && is_held(assessment);
     (shape.met < ENOUGH_MET && !is_one).then_some(Reason::BothOverhang {
         source: coverage.source_on_target.overlap,
         target: coverage.target_on_source.overlap,
@@ -345,7 +361,6 @@ fn ending(outcome: &MatchOutcome) -> Option<Reason> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::assess::ShapeReason;
     use crate::geometry::Point3;
 
     fn shape(remainder: f64, reasons: &[ShapeReason]) -> ShapeStatement {
@@ -375,6 +390,24 @@ mod tests {
         // Edges that were trimmed lie beside each other by chance, but hardly along a third of the outline.
         assert!(!holds(Some(0.9), 0.3));
         assert!(!holds(Some(1.1), 0.9) && !holds(None, 0.9));
+    }
+
+    #[test]
+    fn pieces_of_one_part_share_enough_and_lie_beyond_each_other_otherwise() {
+        let hardly = ShapeReason::HardlyMet { share: 0.4 };
+        let shares = |met, overhang, reasons: &[ShapeReason]| {
+            let mut shape = shape(0.1, reasons);
+            (shape.met, shape.overhang) = (met, overhang);
+            shares_a_piece(&shape)
+        };
+        assert!(shares(0.4, Some(0.59), &[hardly]));
+        assert!(!shares(0.4, Some(0.5), &[hardly]) && !shares(0.4, None, &[hardly]));
+        assert!(!shares(0.3, Some(0.7), &[hardly]));
+        let bend = ShapeReason::Bent {
+            by: 6.0,
+            limit: 5.0,
+        };
+        assert!(!shares(0.4, Some(0.59), &[hardly, bend]) && !shares(0.6, Some(0.4), &[bend]));
     }
 
     #[test]

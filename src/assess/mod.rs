@@ -117,6 +117,13 @@ pub fn assess(
     };
     decide(&mut assessment, &grounds);
     let is_comparable = !assessment.reasons.iter().any(Reason::is_of_units);
+    let is_told = |&difference| assessment.reasons.contains(&Reason::Shape { difference });
+    let is_one = is_comparable && !shape.reasons.iter().all(is_told);
+    let shape = if is_one {
+        shape.of_one_part(noise)
+    } else {
+        shape
+    };
     assessment.shape = is_comparable.then_some(shape);
     monitor.progress("verify", 2, Some(2));
     Ok(assessment)

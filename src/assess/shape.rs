@@ -254,6 +254,13 @@ impl ShapeStatement {
         statement
     }
 
+    /// The same where what was found is no evidence of another part.
+    pub(super) fn of_one_part(mut self, noise: f64) -> Self {
+        self.reasons.clear();
+        self.kind = self.judge(noise, self.remainder);
+        self
+    }
+
     /// The statement about parts that do not meet at all.
     pub(crate) fn nothing_met(tolerance: ShapeTolerance) -> Self {
         Self {

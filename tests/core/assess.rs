@@ -12,7 +12,7 @@ use shapematch::settling::*;
 use shapematch::text::Lengths;
 use shapematch::units::LengthUnit;
 
-use super::drawn_pan::{everywhere, pan, placement, worst_node};
+use super::drawn_pan::{everywhere, pan, panel, placement, worst_node};
 
 /// An n × n grid over the unit square, mapped by `place`.
 fn sheet(n: u32, place: impl Fn(f64, f64) -> Point3) -> TriMesh {
@@ -579,6 +579,33 @@ fn parts_of_which_each_has_a_piece_that_the_other_lacks_are_one_where_they_meet(
     // Another pose is nearly as good, which has nothing to do with that.
     let overhangs = |reason: &Reason| matches!(reason, Reason::BothOverhang { .. });
     assert!(!assessment.reasons.iter().any(overhangs));
+}
+
+#[test]
+fn parts_that_share_less_than_half_of_each_and_nothing_else_speaks_against_are_one() {
+    let left = panel(4.0, 0.0, |x, _| x < 29.0);
+    let right = panel(5.0, 0.35, |x, _| x > -29.0);
+    let truth = placement(12);
+    let stamped = left.transformed(&truth.inverse());
+    let [source, target] = [&stamped, &right].map(|mesh| Surface::new(mesh, "source").unwrap());
+    let (settings, check, silent) = (
+        MatchSettings::default(),
+        AssessSettings::default(),
+        Monitor::silent(),
+    );
+    let mut outcome = matched(&source, &target);
+    settle(&mut outcome, [&source, &target], &settings, &check, &silent).unwrap();
+    let error = worst_node(&stamped, &truth, &outcome.target_from_source);
+    assert!(error < 0.6, "{error}");
+    let assessment = assess(&source, &target, &outcome, &check, &silent).unwrap();
+    let shape = assessment.shape.unwrap();
+    assert!(shape.met > 0.35 && shape.met < 0.5, "{shape:?}");
+    assert_eq!(assessment.verdict, Verdict::Check);
+    let [Reason::BothOverhang { .. }] = assessment.reasons[..] else {
+        panic!("{:?}", assessment.reasons);
+    };
+    assert_ne!(shape.kind, ShapeKind::Different);
+    assert!(shape.reasons.is_empty());
 }
 
 #[test]
