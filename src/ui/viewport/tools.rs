@@ -9,6 +9,7 @@ use crate::app::{AppState, Command, GestureId, ModalInput, MoveCommand, MoveFram
 use crate::geometry::Point3;
 use crate::role::Role;
 use crate::ui::gizmo::paint;
+use crate::ui::pictures::is_screen_taken;
 
 /// The tools of one window.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -173,7 +174,8 @@ impl Tools {
 
     /// Draws the gizmo and says what its active handle does.
     pub fn paint(&self, ui: &Ui, frame: &FrameContext<'_>) {
-        if let Some(axes) = move_frame(frame).filter(|_| self.has_gizmo) {
+        let is_shown = self.has_gizmo && !is_screen_taken(ui.ctx());
+        if let Some(axes) = move_frame(frame).filter(|_| is_shown) {
             let painter = ui.painter_at(frame.rect());
             let view = gizmo_view(frame, &axes);
             let is_dark = ui.visuals().dark_mode;
