@@ -182,12 +182,7 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
     let is_unit_in_doubt = state.is_unit_in_doubt();
     let n_told = if is_unit_in_doubt { 1 } else { 3 };
     for reason in assessment.reasons.iter().take(n_told) {
-        let words = if is_unit_in_doubt {
-            reason.words(lengths)
-        } else {
-            reason.words_beside_figures(lengths)
-        };
-        paragraph(ui, sentence(&words));
+        paragraph(ui, sentence(&state.reason_words(reason)));
     }
     if is_unit_in_doubt {
         return;
