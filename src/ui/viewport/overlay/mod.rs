@@ -18,6 +18,7 @@ mod section;
 
 pub use free::free_choice;
 
+pub(super) use self::room::FreeRoom;
 pub(super) use crate::text::grouped;
 use egui::{Align2, FontId, Painter, Rect, Ui};
 
