@@ -35,24 +35,12 @@ pub fn run(args: &MatchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let outputs = outputs(&args.output);
     check_outputs(targets(&outputs), &named_inputs(args))?;
     check_included_name(&outputs, args.stamped.as_deref())?;
-    let mut found = None;
-    let (mut asked, parts) = match &args.stamped {
+    let (mut asked, mut parts, is_part_chosen) = match &args.stamped {
         Some(path) => {
             let asked = asked(args)?;
             asked.recipe.settings.check().map_err(PipelineError::from)?;
-            let mut parts = load_both(PerRole::new(&args.crash, path), &asked, monitor)?;
-            if args.input.crash_part.is_none() {
-                let both = parts.as_ref();
-                if is_part_open(both) {
-                    found = found_parts(both, &asked, monitor)?;
-                    if let Some(found) = &found {
-                        parts.crash = found.found.part.clone();
-                    }
-                } else if both.crash.chosen_part_ids().len() > 1 {
-                    warn_of_unit(both, monitor)?;
-                }
-            }
-            (asked, parts)
+            let parts = load_both(PerRole::new(&args.crash, path), &asked, monitor)?;
+            (asked, parts, args.input.crash_part.is_some())
         }
         None if is_project(&args.crash) => project::open(args, monitor)?,
         None => {
@@ -62,6 +50,11 @@ pub fn run(args: &MatchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
             );
             return Ok(ExitCode::from(EXIT_USAGE));
         }
+    };
+    let found = if is_part_chosen {
+        None
+    } else {
+        choose_part(&mut parts, &asked, monitor)?
     };
     if let Some(number) = args.output.pose_number {
         asked.pose_number = number;
@@ -241,18 +234,27 @@ fn run_match(
     }
 }
 
-/// The parts of the crash model that the stamped part belongs to; all are matched together where none is found.
-fn found_parts(
-    parts: PerRole<&LoadedPart>,
+/// Takes of a whole crash model the parts that the stamped part belongs to; all are matched together where none is
+/// found.
+fn choose_part(
+    parts: &mut PerRole<LoadedPart>,
     asked: &Asked,
     monitor: &Monitor,
 ) -> anyhow::Result<Option<FoundParts>> {
-    let found = find_parts(parts, &asked.recipe, &asked.current, monitor)?;
-    if found.is_none() {
-        log::warn!(
+    let both = parts.as_ref();
+    if !is_part_open(both) {
+        if both.crash.chosen_part_ids().len() > 1 {
+            warn_of_unit(both, monitor)?;
+        }
+        return Ok(None);
+    }
+    let found = find_parts(both, &asked.recipe, &asked.current, monitor)?;
+    match &found {
+        Some(found) => parts.crash = found.found.part.clone(),
+        None => log::warn!(
             "{} fits no part of the crash model alone, so all are matched together; --crash-part names the right one",
-            parts.stamped.path.display()
-        );
+            both.stamped.path.display()
+        ),
     }
     Ok(found)
 }

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use super::args::MatchArgs;
 use super::recipe::{Asked, take_typed};
 use super::{UsageError, check_outputs, json_target, print, takes_stdout, write_json};
-use crate::formats::{Disk, FileHash};
+use crate::formats::{Disk, FileHash, Selection};
 use crate::geometry::Similarity;
 use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
@@ -19,8 +19,12 @@ use crate::role::PerRole;
 use crate::settings::Choice as _;
 use crate::text::{capital, counted, factor_note, grouped, length, percent};
 
-/// Reads a project and its parts, and what its match is to be run with.
-pub fn open(args: &MatchArgs, monitor: &Monitor) -> anyhow::Result<(Asked, PerRole<LoadedPart>)> {
+/// Reads a project and its parts, and what its match is to be run with; the last value tells whether it is known which
+/// parts of the crash model are meant.
+pub fn open(
+    args: &MatchArgs,
+    monitor: &Monitor,
+) -> anyhow::Result<(Asked, PerRole<LoadedPart>, bool)> {
     let path = args.crash.as_path();
     let request = ProjectRequest {
         path: path.to_path_buf(),
@@ -45,6 +49,8 @@ pub fn open(args: &MatchArgs, monitor: &Monitor) -> anyhow::Result<(Asked, PerRo
         let path = &found.part.path;
         log::warn!("the file has changed since the project was saved: {path:?}");
     }
+    let is_same = parts.iter().all(|(_, found)| !found.is_changed);
+    let is_part_chosen = is_part_chosen(&project, entries.crash, is_same);
     let begin = begin(&project, args)?;
     if let Some(note) = pose_note(&project, &begin.recipe) {
         warn(path, &[note]);
@@ -61,7 +67,16 @@ pub fn open(args: &MatchArgs, monitor: &Monitor) -> anyhow::Result<(Asked, PerRo
         current: begin.pose,
         pose_number: begin.alternative.map_or(1, |index| index + 2),
     };
-    Ok((asked, parts.map(|found| found.part)))
+    let parts = parts.map(|found| found.part);
+    Ok((asked, parts, is_part_chosen))
+}
+
+/// As in the window: the user chose them or said that all are meant, or they were matched as they are.
+fn is_part_chosen(project: &Project, crash: &PartEntry, is_same: bool) -> bool {
+    let is_usual = matches!(crash.selection, Selection::All | Selection::Sheet);
+    let result = project.result.as_ref();
+    let is_of_these = result.is_some_and(|result| result.exchanged == PerRole::both(false));
+    !is_usual || crash.are_all_meant || (is_of_these && is_same)
 }
 
 fn is_reduced(levels: PerRole<Option<usize>>) -> bool {

@@ -49,6 +49,10 @@ pub(super) fn coarse(fine: &RenderMesh, input: MeshInput<'_>) -> Option<Arc<Rend
     for vertex in &mut drawn.corner_vertices {
         *vertex = vertex_of[*vertex as usize];
     }
+    for place in &mut drawn.node_places {
+        place.vertex = vertex_of[place.vertex as usize];
+        place.corner = drawn.source_corners[place.corner as usize];
+    }
     Some(Arc::new(drawn))
 }
 
@@ -84,6 +88,11 @@ mod tests {
         for (&vertex, &corner) in coarse.corner_vertices.iter().zip(&coarse.source_corners) {
             assert!((vertex as usize) < mesh.n_vertices());
             assert!((corner as usize) < 3 * mesh.n_triangles());
+        }
+        assert_eq!(coarse.node_places.len(), coarse.nodes.len());
+        for place in &coarse.node_places {
+            assert!((place.vertex as usize) < mesh.n_vertices());
+            assert!((place.corner as usize) < 3 * mesh.n_triangles());
         }
     }
 

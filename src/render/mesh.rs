@@ -63,6 +63,8 @@ pub struct RenderMesh {
     /// Where the values at the ends of each of them are found.
     pub(super) wide_ends: Vec<[ValuePlace; 2]>,
     pub(super) nodes: Vec<Node>,
+    /// Where the value at each of them is found.
+    pub(super) node_places: Vec<ValuePlace>,
     /// Mean length of the drawn element edges; 0 without edges.
     pub(super) mean_edge_length: f64,
     bounds: Aabb,
@@ -87,7 +89,7 @@ pub(super) struct WideEdge {
     pub(super) part: u32,
 }
 
-/// The vertex and the corner of a mesh whose values an end of an edge takes.
+/// The vertex and the corner of a mesh whose values a node or an end of an edge takes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ValuePlace {
     pub(super) vertex: u32,
@@ -162,13 +164,15 @@ impl RenderMesh {
             let ends = mesh_build::corner_pairs(mesh, &topology, edges);
             wide_ends.extend(ends.into_iter().map(|ends| ends.map(place)));
         }
+        let (nodes, node_places) = nodes_of(mesh, near, part);
         Self {
             origin,
             corners,
             edge_corners: mesh_build::corner_pairs(mesh, &topology, &classes.elements),
             wide_edges,
             wide_ends,
-            nodes: nodes_of(mesh, near, part),
+            nodes,
+            node_places,
             mean_edge_length: mesh_build::mean_length(mesh, &topology, &classes.elements),
             corner_vertices,
             source_corners: Vec::new(),
@@ -216,28 +220,32 @@ impl RenderMesh {
     }
 }
 
-/// Vertices that triangles use, each with the part of its first triangle; all vertices of a mesh
+/// Vertices that triangles use, each with the part and the corner of its first triangle; all vertices of a mesh
 /// without triangles.
 fn nodes_of(
     mesh: &TriMesh,
     near: impl Fn(&Point3) -> [f32; 3],
     part: impl Fn(usize) -> u32,
-) -> Vec<Node> {
-    const UNUSED: u32 = u32::MAX;
-    let mut parts = vec![if mesh.is_empty() { 0 } else { UNUSED }; mesh.n_vertices()];
-    for (t, corners) in mesh.triangles().iter().enumerate() {
-        for &vertex in corners {
-            let known = &mut parts[vertex as usize];
-            if *known == UNUSED {
-                *known = part(t);
-            }
+) -> (Vec<Node>, Vec<ValuePlace>) {
+    const NONE: u32 = u32::MAX;
+    let mut corners = vec![NONE; mesh.n_vertices()];
+    for (corner, &vertex) in mesh.triangles().iter().flatten().enumerate() {
+        let known = &mut corners[vertex as usize];
+        if *known == NONE {
+            *known = corner as u32;
         }
     }
-    let used = mesh.positions().iter().zip(parts);
-    used.filter(|&(_, part)| part != UNUSED)
-        .map(|(p, part)| Node {
-            position: near(p),
-            part,
+    let nodes = (0..).zip(mesh.positions()).zip(corners);
+    nodes
+        .filter(|&(_, corner)| corner != NONE || mesh.is_empty())
+        .map(|((vertex, p), corner)| {
+            let part = if corner == NONE {
+                0
+            } else {
+                part(corner as usize / 3)
+            };
+            let position = near(p);
+            (Node { position, part }, ValuePlace { vertex, corner })
         })
-        .collect()
+        .unzip()
 }

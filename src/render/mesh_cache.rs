@@ -67,10 +67,23 @@ impl GpuMesh {
             nodes: Counted::new(device, &mesh.nodes, vertex),
         }
     }
+
+    /// Where the values at the ends of creases and borders begin in the buffer of a field, in bytes.
+    pub(super) fn ends_begin(&self) -> u64 {
+        let corners = self.corners.as_ref().map_or(0, |corners| corners.count);
+        size_of::<f32>() as u64 * u64::from(corners)
+    }
+
+    /// Where the values at the nodes begin.
+    pub(super) fn nodes_begin(&self) -> u64 {
+        let lines = self.wide_edges.as_ref().map_or(0, |wide| wide.count);
+        self.ends_begin() + 2 * size_of::<f32>() as u64 * u64::from(lines)
+    }
 }
 
-/// Values at every corner of a mesh, and behind them those at both ends of its creases and borders. Larger than `NO_VALUE` of `common.wgsl` where there is none,
-/// because shaders may assume that NaN does not happen.
+/// Values at every corner of a mesh, behind them those at both ends of its creases and borders, and behind these those
+/// at its nodes. Larger than `NO_VALUE` of `common.wgsl` where there is none, because shaders may assume that NaN does
+/// not happen.
 fn field_of(mesh: &RenderMesh, field: &FieldLook) -> Vec<f32> {
     let value = |ValuePlace { vertex, corner }| {
         let at = if field.is_by_corner { corner } else { vertex };
@@ -84,7 +97,8 @@ fn field_of(mesh: &RenderMesh, field: &FieldLook) -> Vec<f32> {
         ValuePlace { vertex, corner }
     });
     let ends = mesh.wide_ends.iter().flatten().copied();
-    corners.chain(ends).map(value).collect()
+    let nodes = mesh.node_places.iter().copied();
+    corners.chain(ends).chain(nodes).map(value).collect()
 }
 
 /// An upload together with what keeps its key unique: as long as the weak reference lives, no other
@@ -171,7 +185,7 @@ impl MeshCache {
         Arc::clone(&kept.value)
     }
 
-    /// The field's values by corner and by end of creases and borders; `None` without triangles.
+    /// The field's values by corner, by end of creases and borders, and by node; `None` for an empty mesh.
     pub(super) fn field(
         &mut self,
         device: &wgpu::Device,

@@ -3,8 +3,9 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Weak};
 
-use egui::{ScreenshotCallback, ViewportCommand};
+use egui::{ScreenshotCallback, Ui, ViewportCommand};
 
 use super::background::run_once;
 use super::panels::graphics;
@@ -54,7 +55,10 @@ impl Pictures {
         let choice = wanted.choice;
         if choice.has_overlays {
             let (sender, waking) = (self.told.0.clone(), ctx.clone());
+            let taking = taking(ctx);
             let callback = ScreenshotCallback::new(move |screen| {
+                drop(taking);
+                waking.request_repaint();
                 if let Some(picture) = graphics::cut_out(&waking, &screen, choice.windows) {
                     write(picture, wanted, sender, waking);
                 }
@@ -88,6 +92,38 @@ impl Pictures {
         }
         news
     }
+}
+
+fn taken_id() -> egui::Id {
+    egui::Id::unique("pictures of the screen under way")
+}
+
+/// Held by a picture of the screen until it is taken or given up.
+fn taking(ctx: &egui::Context) -> Arc<()> {
+    ctx.data_mut(|data| {
+        let others: &mut Weak<()> = data.get_temp_mut_or_default(taken_id());
+        let taking = others.upgrade().unwrap_or_default();
+        *others = Arc::downgrade(&taking);
+        taking
+    })
+}
+
+/// True while a picture of the screen is taken, which is that of the next frame or of a later one.
+pub fn is_screen_taken(ctx: &egui::Context) -> bool {
+    let taken: Option<Weak<()>> = ctx.data(|data| data.get_temp(taken_id()));
+    taken.is_some_and(|taken| taken.strong_count() > 0)
+}
+
+/// Draws what is only there to be clicked: a picture of the screen has its place, so that nothing else moves, but not
+/// what stands there.
+pub fn clickable<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let opacity = ui.opacity();
+    if is_screen_taken(ui.ctx()) {
+        ui.set_opacity(0.0);
+    }
+    let shown = add(ui);
+    ui.set_opacity(opacity);
+    shown
 }
 
 /// Packs and writes on a thread of its own.
@@ -139,6 +175,40 @@ fn save_next(folder: &Path, stem: &str, bytes: &[u8]) -> anyhow::Result<PathBuf>
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_screen_is_taken_until_its_picture_is_there_or_given_up() {
+        let ctx = egui::Context::default();
+        let take = || {
+            let wanted = Wanted {
+                choice: PictureChoice {
+                    has_overlays: true,
+                    ..PictureChoice::default()
+                },
+                place: PicturePlace::File(PathBuf::new()),
+                texts: Vec::new(),
+                inputs: Vec::new(),
+            };
+            let mut output = ctx.run_ui(egui::RawInput::default(), |_| {
+                Pictures::default().want(wanted.clone(), &ctx);
+            });
+            output.textures_delta.clear();
+            let mut commands = output.viewport_output.into_values();
+            let mut commands = commands.next().unwrap().commands.into_iter();
+            commands.find_map(|command| match command {
+                ViewportCommand::Screenshot(callback) => Some(callback),
+                _ => None,
+            })
+        };
+        assert!(!is_screen_taken(&ctx));
+        let [first, second] = [take(), take()];
+        assert!(is_screen_taken(&ctx));
+        let screen = Arc::new(egui::ColorImage::filled([1, 1], egui::Color32::BLACK));
+        first.unwrap().complete(screen);
+        assert!(is_screen_taken(&ctx), "there is another one");
+        drop(second);
+        assert!(!is_screen_taken(&ctx));
+    }
 
     #[test]
     fn the_next_number_is_taken_and_nothing_is_replaced() {

@@ -3,6 +3,7 @@
 use egui::text::LayoutJob;
 use egui::{Align2, Color32, Frame, Margin, RichText, Stroke, TextStyle, Ui, vec2};
 
+use super::pictures::is_screen_taken;
 use super::theme::{Palette, ROW, UNIT};
 use super::widgets::{icon_button, level_color};
 use crate::app::{
@@ -38,6 +39,9 @@ pub fn toasts_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Comma
         .order(egui::Order::Foreground);
     area.show(ctx, |ui| {
         ui.spacing_mut().item_spacing.y = UNIT;
+        if is_screen_taken(ctx) {
+            ui.set_opacity(0.0);
+        }
         let toasts = fitting(ui, state, width, room.height() - FREE - LIFT);
         for notice in toasts.into_iter().rev() {
             toast_ui(ui, notice, state, (width, commands));

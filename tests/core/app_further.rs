@@ -401,6 +401,10 @@ fn each_stamped_file_may_have_a_unit_of_its_own() {
     // As it is, it fits nowhere, and the list says why.
     assert_eq!(factor(&window), 1.0);
     assert_ne!(verdicts(&window)[1], Some(Verdict::Good));
+    let placing = window.state.document.mapping.further[0].placing.clone();
+    let reason = placing.and_then(|placing| placing.reason).unwrap();
+    let doubts = [0, 1].map(|n| window.state.match_doubt(n));
+    assert_eq!(doubts, [None, Some(window.state.reason_words(&reason))]);
     let hint = window.state.stamped_rows()[1].unit_hint.unwrap();
     assert!(hint.words().contains("1000 × smaller"), "{}", hint.words());
     assert_eq!(window.state.stamped_rows()[0].unit_hint, None);

@@ -220,6 +220,45 @@ fn which_of_several_parts_is_meant_stays_open_until_the_user_has_chosen() {
 }
 
 #[test]
+fn a_project_of_a_whole_model_asks_for_the_part_as_its_files_do() {
+    let folder = tempfile::tempdir().unwrap();
+    write_bracket(folder.path(), SampleVariant::WholeModel);
+    let project = folder.path().join("car.shapematch");
+    let name = project.to_str().unwrap();
+    let mut window = Window::with_files_of(folder.path(), really);
+    let n_parts = window.part(Role::Crash).facts.used.len();
+    let asked = window.state.part_question().cloned();
+    assert!(asked.is_some());
+    let opened = |window: &Window| {
+        window.state.to_project(0).write(&project).unwrap();
+        let mut again = Window::new();
+        again.runner = Some(really);
+        again.open(name, Role::Crash);
+        again
+    };
+    let n_matched = |record: &Value| record["files"]["crash"]["parts"].as_array().unwrap().len();
+    let mut again = opened(&window);
+    assert_eq!(again.state.part_question(), asked.as_ref());
+    again.act(Action::MatchOrStop);
+    let result = again.state.document.current_result().expect("a result");
+    assert_eq!(result.verdict(), Verdict::Good);
+    assert_eq!(again.part(Role::Crash).facts.used.len(), 1);
+    let record = record_of(folder.path(), &[name]);
+    assert_eq!(
+        (record["verdict"].as_str(), n_matched(&record)),
+        (Some("good"), 1)
+    );
+
+    // An answer is kept.
+    window.apply(PartCommand::UseAll(Role::Crash));
+    let again = opened(&window);
+    assert!(again.state.part_question().is_none());
+    let once_more = opened(&again);
+    assert!(once_more.state.part_question().is_none());
+    assert_eq!(n_matched(&record_of(folder.path(), &[name])), n_parts);
+}
+
+#[test]
 fn a_part_that_is_chosen_after_a_match_of_several_is_matched_at_once() {
     let folder = twice();
     let mut window = window_of_twice(folder.path());

@@ -3,10 +3,11 @@
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use shapematch::app::{Dialog, PictureSize, PictureWindows};
+use shapematch::app::{Dialog, ExportCommand, PictureChoice, PictureSize, PictureWindows};
 use shapematch::ui::Shell;
 
-use super::story::{click, finish, window};
+use super::layout::{texts, wait_for};
+use super::story::{click, finish, matched, window};
 use super::typed::type_into;
 
 #[test]
@@ -78,4 +79,51 @@ fn enter_in_the_dialog_of_a_picture_saves_it() {
     window.key_press(Key::Enter);
     window.run_steps(2);
     assert_eq!(dialog(&window), None);
+}
+
+#[test]
+fn a_picture_with_its_legend_has_no_buttons() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = matched();
+    click(&mut window, "Move over");
+    finish(&mut window);
+    wait_for(&mut window, "Unfold the legend (stamped)");
+    click(&mut window, "Unfold the legend (stamped)");
+    window.run_steps(4);
+    let n_drawn = |window: &Harness<'static, Shell>, names: &[&str]| {
+        let texts = texts(window).into_iter();
+        texts.filter(|text| names.contains(&&*text.text)).count()
+    };
+    let buttons = [
+        "Iso",
+        "Link",
+        "Colours",
+        "Full mesh",
+        "Hide outside the limits",
+    ];
+    let told = ["CRASH", "Deviation", "within ±", "up to date"];
+    for name in buttons.iter().chain(&told) {
+        assert!(n_drawn(&window, &[name]) > 0, "{name}");
+    }
+    let before = n_drawn(&window, &told);
+    let write = ExportCommand::WritePicture {
+        choice: PictureChoice {
+            has_overlays: true,
+            ..PictureChoice::default()
+        },
+        path: folder.path().join("image.png"),
+    };
+    let ctx = window.ctx.clone();
+    window.state_mut().run_commands(vec![write.into()], &ctx);
+    // The harness takes the picture of this frame.
+    window.step();
+    for name in buttons {
+        assert_eq!(n_drawn(&window, &[name]), 0, "{name}");
+    }
+    // One of them is a choice.
+    assert_eq!(n_drawn(&window, &told), before - 1);
+    window.run_steps(2);
+    for name in buttons {
+        assert!(n_drawn(&window, &[name]) > 0, "{name}");
+    }
 }

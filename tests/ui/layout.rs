@@ -614,7 +614,7 @@ pub(super) fn point_at_crash_part<T>(
 }
 
 /// The colours of a window are worked out in the background.
-fn wait_for(window: &mut Window, label: &str) {
+pub(super) fn wait_for(window: &mut Window, label: &str) {
     let begin = Instant::now();
     while window.query_by_label(label).is_none() {
         assert!(begin.elapsed() < Duration::from_secs(120), "no {label}");

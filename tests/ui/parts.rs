@@ -9,6 +9,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use shapematch::app::{FileCommand, PartCommand, PartRef};
 use shapematch::assess::Verdict;
 use shapematch::role::Role;
+use shapematch::text::sentence;
 use shapematch::ui::Shell;
 
 use super::bracket::write_twice;
@@ -183,6 +184,25 @@ fn a_result_that_fits_several_parts_has_a_button_for_each() {
         result.expect("a result").verdict()
     };
     assert_eq!(verdict(&window), Verdict::Check);
+    // Section 4 says why in the words of the card. There is room for it.
+    window.set_size(egui::vec2(1400.0, 1800.0));
+    window.run_steps(4);
+    let state = window.state().state();
+    let reasons = &state
+        .document
+        .current_result()
+        .unwrap()
+        .run
+        .assessment
+        .reasons;
+    let why = sentence(&state.reason_words(&reasons[0]));
+    assert!(window.query_by_label(&why).is_some(), "{why}");
+    assert_eq!(
+        state.match_doubt(0).map(|why| sentence(&why)),
+        Some(why.clone())
+    );
+    let pose = format!("Pose: CHECK match. {why}");
+    assert!(window.query_by_label(&pose).is_some(), "{pose}");
     let (role, ids) = (Role::Crash, [2_000_040, 52_000_040]);
     let document = &window.state().state().document;
     let titles = ids.map(|id| document.part_title(PartRef { role, id }));

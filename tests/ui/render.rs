@@ -509,6 +509,37 @@ fn lines_of_what_is_hidden_are_not_drawn() {
 }
 
 #[test]
+fn nodes_of_what_is_hidden_are_not_drawn() {
+    let scale = ColorScale {
+        hides_beyond: true,
+        ..ColorScale::new(ColorMap::Rainbow, 0.25, 0.75)
+    };
+    let camera = from(StandardView::Top, Point3::origin());
+    let shown = |values: &[f32], is_by_corner: bool| {
+        let mesh = square(Point3::origin());
+        let mut drawable = plain(&mesh, BLUE);
+        drawable.style.points = true;
+        drawable.style.surface = false;
+        drawable.field = Some(FieldLook {
+            values: values.into(),
+            is_by_corner,
+            scale,
+        });
+        let shot = picture(&scene(vec![drawable]), &camera);
+        let is_drawn = |node: &Point3| color_at(&shot, &camera, node)[3] > 0;
+        mesh.positions().iter().map(is_drawn).collect::<Vec<_>>()
+    };
+    assert_eq!(shown(&[0.5; 4], false), [true; 4]);
+    assert_eq!(
+        shown(&[0.5, 0.9, f32::NAN, 0.1], false),
+        [true, false, true, false]
+    );
+    // Of two triangles with a value each, the nodes of the shown one stay.
+    let by_corner = [0.5, 0.5, 0.5, 0.9, 0.9, 0.9];
+    assert_eq!(shown(&by_corner, true), [true, true, true, false]);
+}
+
+#[test]
 fn picking_names_the_triangle_in_front() {
     let size = SIZE;
     let mut drawables = vec![

@@ -24,6 +24,8 @@ use shapematch::pipeline::load::prepare;
 use shapematch::role::Role;
 use shapematch::ui::viewport::Viewports;
 
+use super::layout::{Painted, texts};
+
 const SIZE: Vec2 = vec2(640.0, 320.0);
 
 /// A gently bent sheet of 12 × 8 cells.
@@ -482,6 +484,54 @@ fn a_quick_drag_on_a_handle_moves_the_part_and_not_the_camera() {
         let moved = desk.state.document.crash_from_stamped().translation;
         let error = (moved - expected).norm() / expected.norm();
         assert!(error < 1e-3, "{moved} for {expected}");
+    }
+}
+
+#[test]
+fn letters_of_the_gizmo_are_never_cut_nor_covered() {
+    let (mut harness, _) = with_gizmo();
+    let role = Role::Stamped;
+    let area = area(&harness, role);
+    let pivot = harness.state().state.document.stamped_center().unwrap();
+    let [width, height] = [area.width(), area.height()].map(f64::from);
+    let [middle, edge] = [[0.5 * width, 0.5 * height], [30.0, 60.0]];
+    for at in [
+        middle,
+        [middle[0], edge[1]],
+        [middle[0], height - edge[1]],
+        [edge[0], middle[1]],
+        [width - edge[0], middle[1]],
+        [width - 100.0, 100.0],
+    ] {
+        let camera = harness.state().camera(role);
+        let there = camera.unproject(at, screen_of(area), &pivot);
+        let moved = Camera {
+            target: camera.target + (pivot - there),
+            ..camera
+        };
+        let command = ViewCommand::SetCamera(role, moved);
+        harness.state_mut().apply(command.into());
+        harness.run_steps(3);
+        let covered = harness.state().state.view.rooms.get(role).covered;
+        let free = Rect::from_min_max(
+            area.min + vec2(0.0, area.height() * covered.top as f32),
+            area.max - vec2(0.0, area.height() * covered.bottom as f32),
+        );
+        // The letters of the cube and of the buttons are smaller.
+        let is_letter = |text: &Painted| {
+            let is_here = area.intersects(text.rect) && text.rect.height() > 15.0;
+            is_here && ["X", "Y", "Z"].contains(&&*text.text)
+        };
+        let letters: Vec<_> = texts(&harness).into_iter().filter(is_letter).collect();
+        assert!(!letters.is_empty(), "{at:?}");
+        for letter in letters {
+            assert!(
+                free.contains_rect(letter.rect),
+                "{} {:?}",
+                letter.text,
+                letter.rect
+            );
+        }
     }
 }
 

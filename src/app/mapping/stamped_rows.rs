@@ -121,6 +121,31 @@ impl AppState {
         rows
     }
 
+    /// Why the match that the pose of a stamped file comes from, by the file's place in the list, is not good: the
+    /// first reason of its verdict, as the card says it.
+    pub fn match_doubt(&self, n: usize) -> Option<String> {
+        let (verdict, reason) = match n.checked_sub(1) {
+            None => {
+                let PoseOrigin::Match { verdict } = self.document.pose_origin() else {
+                    return None;
+                };
+                let result = self.document.result.as_ref()?;
+                (verdict, result.run.assessment.reasons.first()?)
+            }
+            Some(further) => {
+                let placing = self
+                    .document
+                    .mapping
+                    .further
+                    .get(further)?
+                    .placing
+                    .as_ref()?;
+                (placing.verdict, placing.reason.as_ref()?)
+            }
+        };
+        (verdict != Verdict::Good).then(|| self.reason_words(reason))
+    }
+
     fn first_state(&self) -> StampedState {
         match self.document.current_result() {
             Some(result) => match result.alternative {

@@ -85,6 +85,16 @@ impl AppState {
         })
     }
 
+    /// A reason of a verdict as the card says it: beside the figures, which it does not show while the units are in
+    /// doubt.
+    pub fn reason_words(&self, reason: &Reason) -> String {
+        if self.is_unit_in_doubt() {
+            reason.words(self.lengths())
+        } else {
+            reason.words_beside_figures(self.lengths())
+        }
+    }
+
     /// Why the last match gave no pose, if these are still its parts.
     pub fn match_failure(&self) -> Option<&str> {
         self.failure().map(|failure| failure.message.as_str())

@@ -77,7 +77,7 @@ impl PartsState {
             PartCommand::MatchOnly(part) => return self.match_only(work, part),
             PartCommand::UseAll(role) => {
                 if role == Role::Crash {
-                    self.all_meant_for.push(work.document.stamp().parts);
+                    self.mean_all(work.document);
                 }
                 return self.use_parts(work, role, Selection::All);
             }

@@ -520,7 +520,7 @@ impl PartsState {
         let revision = work.history.next_revision();
         let name = self.reselect_name(work, role, &part, &facts);
         let gesture = self.unit_gesture.take();
-        let are_all_meant = self.all_meant_for.contains(&work.document.stamp().parts);
+        let are_all_meant = self.are_all_meant(work.document);
         work.previews.drop_all();
         work.commit_in(name, gesture, |document| {
             if let Some(old) = document.parts.get_mut(role) {
@@ -531,7 +531,7 @@ impl PartsState {
             }
         });
         if are_all_meant {
-            self.all_meant_for.push(work.document.stamp().parts);
+            self.mean_all(work.document);
         }
         self.forget_missing(work.document);
         work.log_step(LogStep::Select, Some(role), line, Some(took));

@@ -96,14 +96,14 @@ impl AppState {
 
     /// [`AppState::more_alike`] until the user said which parts are matched, or a match was made.
     pub fn part_question(&self) -> Option<&MoreAlike> {
-        let parts = self.document.stamp().parts;
         let crash = self.document.part(Role::Crash);
         let is_chosen = crash.is_some_and(|crash| {
             let selection = &crash.loaded.settings.selection;
             !matches!(selection, Selection::All | Selection::Sheet)
         });
-        let is_answered = is_chosen || self.parts.all_meant_for.contains(&parts);
+        let is_answered = is_chosen || self.parts.are_all_meant(&self.document);
         let result = self.document.result.as_ref();
+        let parts = self.document.stamp().parts;
         let is_matched = result.is_some_and(|result| result.stamp.parts == parts);
         self.more_alike().filter(|_| !is_answered && !is_matched)
     }
@@ -119,6 +119,16 @@ impl AppState {
 }
 
 impl PartsState {
+    /// True if the user said that all parts of the crash model are meant.
+    pub(in crate::app) fn are_all_meant(&self, document: &Document) -> bool {
+        self.all_meant_for.contains(&document.stamp().parts)
+    }
+
+    /// The user says so, or said so of the same parts.
+    pub(in crate::app) fn mean_all(&mut self, document: &Document) {
+        self.all_meant_for.push(document.stamp().parts);
+    }
+
     pub(super) fn order_like(&mut self, document: &Document, to: Option<LikeWhat>) {
         self.likeness = to.and_then(|to| document.likeness_to(to));
     }

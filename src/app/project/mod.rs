@@ -94,6 +94,7 @@ impl AppState {
             let part = document.part(role)?;
             Some(PartEntry {
                 is_hidden: role == Role::Stamped && self.is_file_hidden(&part.loaded.path),
+                are_all_meant: role == Role::Crash && self.parts.are_all_meant(document),
                 ..part_entry(part)
             })
         };

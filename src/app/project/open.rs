@@ -232,6 +232,11 @@ impl AppState {
         let sweep = project.sweep.clone().map(|sweep| Arc::new(sweep).into());
         self.matching.reopen(&self.document, sweep);
         self.parts.selected.clear();
+        let crash = project.parts.crash.as_ref();
+        if crash.is_some_and(|crash| crash.are_all_meant) {
+            self.parts.mean_all(&self.document);
+        }
+        self.parts.refresh_likeness(&self.document);
         self.view.n_restored += 1;
         match window {
             Some(window) => window.show(self),

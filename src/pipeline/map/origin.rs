@@ -120,25 +120,20 @@ impl PoseOrigin {
         }
     }
 
-    /// The most doubtful of the poses of these files, the first of equal ones, in words: "b.k: POOR match". One
-    /// that is as good as all others names no file.
-    pub fn most_doubtful(files: &[(String, Self)], lengths: Lengths) -> Option<(Self, String)> {
-        let (first, others) = files.split_first()?;
-        let (name, most) = others.iter().fold(first, |most, next| {
-            if next.1.doubt() > most.1.doubt() {
-                next
-            } else {
-                most
-            }
-        });
-        let words = most.words(lengths);
-        let is_named = !others.is_empty() && most.is_good() != Some(true);
+    /// The most doubtful of the poses of these files, the first of equal ones, by its place and in words: "b.k: POOR
+    /// match". One that is as good as all others names no file.
+    pub fn most_doubtful(files: &[(String, Self)], lengths: Lengths) -> Option<(usize, String)> {
+        // The last of the largest is taken.
+        let most = (0..files.len()).rev().max_by_key(|&n| files[n].1.doubt())?;
+        let (name, origin) = &files[most];
+        let words = origin.words(lengths);
+        let is_named = files.len() > 1 && origin.is_good() != Some(true);
         let words = if is_named {
             format!("{name}: {words}")
         } else {
             words
         };
-        Some((*most, words))
+        Some((most, words))
     }
 
     /// What is to be told before the mapping is used; `None` if nothing is.

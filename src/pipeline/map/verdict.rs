@@ -189,6 +189,7 @@ fn pose(record: &MapRecord, lengths: Lengths) -> Option<CheckRecord> {
     let of = |stamped: &StampedRecord| (record.stamped_name(stamped), stamped.pose);
     let poses: Vec<_> = record.stamped.iter().map(of).collect();
     let (most, found) = PoseOrigin::most_doubtful(&poses, lengths)?;
+    let (_, most) = poses[most];
     Some(CheckRecord {
         name: "Pose".to_owned(),
         found,

@@ -54,6 +54,9 @@ pub struct PartEntry {
     /// Ids of other parts that fit the stamped part about as well, where the program chose among them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub alike_parts: Vec<u64>,
+    /// True if the user said that all parts of a crash model are meant, so that none is looked for.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub are_all_meant: bool,
     /// Factor on its coordinates.
     pub length_factor: f64,
     /// Its units, if the user set them.
@@ -82,6 +85,7 @@ impl Default for PartEntry {
             triangles: 0,
             selection: Selection::All,
             alike_parts: Vec::new(),
+            are_all_meant: false,
             length_factor: 1.0,
             units: None,
             include_folders: Vec::new(),

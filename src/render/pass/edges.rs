@@ -93,11 +93,10 @@ impl Edges {
             if !lines.is_empty() {
                 pass.set_pipeline(&self.wide);
                 pass.set_vertex_buffer(0, wide.buffer.slice(..));
-                // Behind the values at the corners lie those at the ends of these lines.
-                let n_corners = mesh.corners.as_ref().map_or(0, |corners| corners.count);
-                let behind = size_of::<f32>() as u64 * u64::from(n_corners);
                 let field = drawable.field.as_deref();
-                let field = field.map_or(wide.buffer.slice(..), |field| field.slice(behind..));
+                let field = field.map_or(wide.buffer.slice(..), |field| {
+                    field.slice(mesh.ends_begin()..)
+                });
                 pass.set_vertex_buffer(1, field);
                 pass.draw(0..6, first + lines.start..first + lines.end);
             }

@@ -5,12 +5,15 @@ struct Varyings {
     @location(0) view: vec3<f32>,
     // Pixels from the centre.
     @location(1) place: vec2<f32>,
+    // Field value and 1 where there is one.
+    @location(2) field: vec2<f32>,
 }
 
 @vertex
 fn vs_main(
     @location(0) position: vec3<f32>,
     @location(1) part: u32,
+    @location(2) field: f32,
     @builtin(vertex_index) corner: u32,
 ) -> Varyings {
     var out: Varyings;
@@ -24,6 +27,7 @@ fn vs_main(
     let top = corner == 2u || corner == 4u || corner == 5u;
     let reach = 0.5 * frame.widths.z + 1.0;
     out.place = vec2<f32>(select(-reach, reach, right), select(-reach, reach, top));
+    out.field = known_value(field);
     out.clip = center + vec4<f32>(out.place / (0.5 * frame.screen.xy) * center.w, 0.0, 0.0);
     return out;
 }
@@ -32,7 +36,7 @@ fn vs_main(
 fn fs_main(in: Varyings) -> @location(0) vec4<f32> {
     let distance = length_2d(in.place);
     let radius = 0.5 * frame.widths.z;
-    if distance > radius + 0.5 || removed(in.view, in.clip.xy) {
+    if distance > radius + 0.5 || beyond_limits(in.field) || removed(in.view, in.clip.xy) {
         discard;
     }
     // A dark rim keeps the dots apart from a part of the same colour.

@@ -12,6 +12,7 @@ use crate::jobs::JobKey;
 use crate::report::picture::Picture;
 use crate::role::Role;
 use crate::ui::overlays::mouse_choice;
+use crate::ui::pictures::clickable;
 use crate::ui::theme::{Palette, ROW, TALL, UNIT};
 use crate::ui::viewport::Viewports;
 use crate::ui::viewport::{free_choice, read_points};
@@ -165,7 +166,7 @@ fn drawing_ui(ui: &mut Ui, state: &AppState, viewports: &Viewports, commands: &m
     ui.scope_builder(UiBuilder::new().max_rect(inner), |ui| {
         ui.spacing_mut().item_spacing = vec2(UNIT, UNIT);
         let width = 496.0_f32.min(inner.width());
-        free_choice(ui, state, width, commands);
+        clickable(ui, |ui| free_choice(ui, state, width, commands));
         viewports.section_ui(ui, state, commands);
     });
 }
@@ -178,11 +179,13 @@ fn away_ui(ui: &mut Ui, rect: Rect, state: &AppState, commands: &mut Vec<Command
             role_mark(ui, Role::Stamped);
             ui.label("Moved to the left window");
             ui.add_space(UNIT);
-            let look = ("Move back", Look::Plain, vec2(128.0, TALL));
-            action_button(ui, state, Action::ToggleMoveOver, look, commands);
-            ui.add_space(UNIT);
-            secondary(ui, "Use this window for");
-            free_choice(ui, state, ui.available_width(), commands);
+            clickable(ui, |ui| {
+                let look = ("Move back", Look::Plain, vec2(128.0, TALL));
+                action_button(ui, state, Action::ToggleMoveOver, look, commands);
+                ui.add_space(UNIT);
+                secondary(ui, "Use this window for");
+                free_choice(ui, state, ui.available_width(), commands);
+            });
         });
     });
 }

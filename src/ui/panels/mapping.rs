@@ -10,6 +10,7 @@ use crate::app::{
     Action, AppState, BottomTab, ColorBy, Command, DoubtfulElement, InspectCommand, MapCommand,
     MapPicture, MapResult, Quantity, Section, UnmappedElement, ViewCommand,
 };
+use crate::assess::Verdict;
 use crate::geometry::Point3;
 use crate::jobs::JobKey;
 use crate::mapping::MapOptions;
@@ -171,17 +172,24 @@ fn run_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     pose_ui(ui, state);
 }
 
-/// At which pose a mapping is made, of several files at their most doubtful one: a permanent line wherever no
-/// good match stands for it.
+/// At which pose a mapping is made, of several files at their most doubtful one, and of a match why it is doubtful: a
+/// permanent line wherever no good match stands for it.
 fn pose_ui(ui: &mut Ui, state: &AppState) {
     if state.document.can_map().is_err() {
         return;
     }
     let poses = state.document.mapped_poses();
-    let Some((origin, words)) = PoseOrigin::most_doubtful(&poses, state.lengths()) else {
+    let Some((n, words)) = PoseOrigin::most_doubtful(&poses, state.lengths()) else {
         return;
     };
-    let text = format!("Pose: {words}");
+    let (_, origin) = poses[n];
+    let mut text = format!("Pose: {words}");
+    // Of a poor match of a further file the list tells why.
+    let verdict = Verdict::Poor;
+    let is_told = n > 0 && origin == PoseOrigin::Match { verdict };
+    if let Some(doubt) = state.match_doubt(n).filter(|_| !is_told) {
+        text += &format!(". {}", sentence(&doubt));
+    }
     let color = if origin.is_good() == Some(false) {
         Palette::of(ui).check
     } else {

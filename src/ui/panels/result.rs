@@ -32,7 +32,7 @@ pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     };
     ui.add_space(2.0);
     let top = ui.cursor().top();
-    let held = HeldHeight::read(ui);
+    let held = HeldHeight::read(ui, (result.stamp, state.document.stamp().parts));
     card(ui, |ui| {
         let first = ui.cursor().top();
         if state.previews.of_match().is_some() {
@@ -92,6 +92,8 @@ pub fn pose_by_hand_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command
 /// at what stands below it, so that a button can be clicked twice.
 #[derive(Debug, Clone, Copy, Default)]
 struct HeldHeight {
+    /// The result and the parts that are shown: the card of others has its own height.
+    of: (Stamp, PerRole<u64>),
     height: f32,
     bottom: f32,
 }
@@ -101,9 +103,13 @@ impl HeldHeight {
         egui::Id::unique("height of the verdict card")
     }
 
-    fn read(ui: &Ui) -> Self {
-        ui.data(|data| data.get_temp(Self::id()))
-            .unwrap_or_default()
+    fn read(ui: &Ui, of: (Stamp, PerRole<u64>)) -> Self {
+        let last: Option<Self> = ui.data(|data| data.get_temp(Self::id()));
+        let fresh = Self {
+            of,
+            ..Self::default()
+        };
+        last.filter(|last| last.of == of).unwrap_or(fresh)
     }
 
     /// At the end of the card whose content began at `first`.
@@ -118,6 +124,7 @@ impl HeldHeight {
         let now = Self {
             height: bottom - first,
             bottom,
+            ..self
         };
         ui.data_mut(|data| data.insert_temp(Self::id(), now));
     }
@@ -182,12 +189,7 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
     let is_unit_in_doubt = state.is_unit_in_doubt();
     let n_told = if is_unit_in_doubt { 1 } else { 3 };
     for reason in assessment.reasons.iter().take(n_told) {
-        let words = if is_unit_in_doubt {
-            reason.words(lengths)
-        } else {
-            reason.words_beside_figures(lengths)
-        };
-        paragraph(ui, sentence(&words));
+        paragraph(ui, sentence(&state.reason_words(reason)));
     }
     if is_unit_in_doubt {
         return;
@@ -547,6 +549,40 @@ mod tests {
         for (text, value) in texts.iter().zip(values) {
             assert_eq!(text.trim().parse(), Ok(value));
         }
+    }
+
+    #[test]
+    fn the_height_of_a_card_is_kept_for_its_result_and_parts_alone() {
+        let ctx = egui::Context::default();
+        let height = |result: u64, parts: u64, content: f32| {
+            let stamp = Stamp {
+                pose: result,
+                ..Stamp::default()
+            };
+            let input = egui::RawInput {
+                screen_rect: Some(egui::Rect::from_min_size(
+                    egui::Pos2::ZERO,
+                    vec2(300.0, 800.0),
+                )),
+                events: vec![egui::Event::PointerMoved(egui::pos2(50.0, 700.0))],
+                ..egui::RawInput::default()
+            };
+            let mut found = 0.0;
+            let mut output = ctx.run_ui(input, |ui| {
+                let held = HeldHeight::read(ui, (stamp, PerRole::both(parts)));
+                let first = ui.cursor().top();
+                ui.add_space(content);
+                held.hold(ui, first);
+                found = ui.cursor().top() - first;
+            });
+            output.textures_delta.clear();
+            found
+        };
+        let heights = [(1, 1, 300.0), (1, 1, 100.0), (1, 2, 100.0)];
+        let found = heights.map(|(result, parts, content)| height(result, parts, content));
+        assert_eq!(found, [300.0, 300.0, 100.0]);
+        let found = [(2, 2, 300.0), (3, 2, 100.0)].map(|(r, p, content)| height(r, p, content));
+        assert_eq!(found, [300.0, 100.0]);
     }
 
     #[test]

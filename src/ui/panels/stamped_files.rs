@@ -6,6 +6,7 @@ use super::units;
 use crate::app::{
     Action, AppState, Command, FurtherPose, MapCommand, StampedRow, StampedState, ViewCommand,
 };
+use crate::assess::Verdict;
 use crate::pipeline::map::pose_warning;
 use crate::role::Role;
 use crate::text::sentence;
@@ -25,7 +26,7 @@ pub fn stamped_files_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comman
     });
     for row in &rows {
         row_ui(ui, row, state, commands);
-        if let Some(problem) = problem(row) {
+        if let Some(problem) = problem(row, state) {
             let color = Palette::of(ui).poor;
             let text = RichText::new(problem).small().color(color);
             ui.add(egui::Label::new(text).wrap());
@@ -176,7 +177,7 @@ fn state_ui(ui: &mut Ui, state: &StampedState) {
 }
 
 /// What is wrong with a file, and what to do.
-fn problem(row: &StampedRow) -> Option<String> {
+fn problem(row: &StampedRow, state: &AppState) -> Option<String> {
     if let Some(hint) = &row.unit_hint
         && matches!(
             row.state,
@@ -198,8 +199,11 @@ fn problem(row: &StampedRow) -> Option<String> {
             sentence(reason)
         )),
         // Section 3 tells of the first one.
-        StampedState::Matched(verdict, _) if row.further.is_some() => {
-            pose_warning(*verdict, &row.name).map(|warning| sentence(&warning))
+        StampedState::Matched(Verdict::Poor, _) if row.further.is_some() => {
+            let doubt = row.number.and_then(|n| state.match_doubt(n));
+            // An older project does not know why.
+            let doubt = doubt.or_else(|| pose_warning(Verdict::Poor, &row.name));
+            doubt.map(|doubt| sentence(&doubt))
         }
         _ => None,
     }

@@ -38,6 +38,7 @@ use frame::{FrameContext, ViewFrame};
 use gpu::{Gpu, Stopwatch, Took, Unfinished, ViewCallback};
 use meshes::{MeshStore, ShownMesh};
 use motion::{Crossing, SmoothPose};
+use overlay::FreeRoom;
 pub use overlay::free_choice;
 use picture::{Layer, Picture};
 use sections::SectionStore;
@@ -373,7 +374,6 @@ impl Viewports {
         } else {
             picking::update(frame, commands)
         };
-        window.tools.paint(ui, frame);
         let kind = FieldKind::of(state.color_by(role));
         let over = overlay::Overlay {
             frame,
@@ -386,6 +386,7 @@ impl Viewports {
             pick,
             is_preparing: is_preparing(state, frame.view, frame.picture),
         };
+        window.tools.paint(ui, frame, &FreeRoom::of(ui, &over));
         overlay::show(ui, &over, commands);
     }
 

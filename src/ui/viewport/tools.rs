@@ -4,11 +4,13 @@ use egui::{Event, InputState, Key, Modifiers, PointerButton, Pos2, Ui};
 
 use super::frame::FrameContext;
 use super::navigation::{angle_between, pixel_of, pos_of, screen_of};
+use super::overlay::FreeRoom;
 use crate::app::gizmo::{Gizmo, GizmoDelta, GizmoView, Layout, PointerInput};
 use crate::app::{AppState, Command, GestureId, ModalInput, MoveCommand, MoveFrame, MoveTool};
 use crate::geometry::Point3;
 use crate::role::Role;
 use crate::ui::gizmo::paint;
+use crate::ui::pictures::is_screen_taken;
 
 /// The tools of one window.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -171,13 +173,16 @@ impl Tools {
         before.into_iter().chain([now]).collect()
     }
 
-    /// Draws the gizmo and says what its active handle does.
-    pub fn paint(&self, ui: &Ui, frame: &FrameContext<'_>) {
-        if let Some(axes) = move_frame(frame).filter(|_| self.has_gizmo) {
+    /// Draws the gizmo, its letters where `free` has room for them.
+    pub fn paint(&self, ui: &Ui, frame: &FrameContext<'_>, free: &FreeRoom) {
+        let is_shown = self.has_gizmo && !is_screen_taken(ui.ctx());
+        if let Some(axes) = move_frame(frame).filter(|_| is_shown) {
             let painter = ui.painter_at(frame.rect());
             let view = gizmo_view(frame, &axes);
             let is_dark = ui.visuals().dark_mode;
-            paint(&painter, frame.rect().min, &view, &self.gizmo, is_dark);
+            let is_free = |place| free.holds(place);
+            let origin = frame.rect().min;
+            paint(&painter, origin, &view, &self.gizmo, is_dark, is_free);
         }
     }
 

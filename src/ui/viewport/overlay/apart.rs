@@ -6,6 +6,7 @@ use super::{Overlay, legend};
 use crate::app::{Command, MoveCommand};
 use crate::geometry::Point3;
 use crate::role::Role;
+use crate::ui::pictures::clickable;
 use crate::ui::viewport::navigation::pos_of;
 
 /// Parts are far apart when their centres are further from each other than this share of their
@@ -33,7 +34,8 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
         painter.circle_filled(at, 4.0, over.frame.look.role(role));
     }
     if over.frame.state.can_move().is_ok() && !over.frame.state.is_preview() {
-        suggest(ui, over, from + (to - from) * 0.5, commands);
+        let middle = from + (to - from) * 0.5;
+        clickable(ui, |ui| suggest(ui, over, middle, commands));
     }
 }
 

@@ -7,6 +7,7 @@ use super::Overlay;
 use crate::app::{Action, AppState, Command, PreviewCommand};
 use crate::assess::error_beside;
 use crate::role::Role;
+use crate::ui::pictures::clickable;
 
 /// Above the scale bar and the readout.
 pub(super) const BOTTOM: f32 = 62.0;
@@ -61,7 +62,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     let corner = ground.right_center() + vec2(-size.x - 5.0, -size.y / 2.0);
     let area = Rect::from_min_size(corner, size);
     let button = Button::new(RichText::new(banner.label).size(12.5));
-    if ui.put(area, button).clicked() {
+    if clickable(ui, |ui| ui.put(area, button)).clicked() {
         commands.extend(banner.commands);
     }
     true

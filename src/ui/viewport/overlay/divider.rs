@@ -7,6 +7,7 @@ use egui::{
 
 use super::Overlay;
 use crate::app::{AppState, Command, ViewCommand};
+use crate::ui::pictures::is_screen_taken;
 use crate::ui::viewport::visible_parts::{Divider, divider};
 
 /// How far beside the line it can be grabbed.
@@ -63,6 +64,9 @@ fn paint(ui: &Ui, over: &Overlay<'_>, line: Rect, width: f32) {
     let ends = [line.center_top(), line.center_bottom()];
     painter.line_segment(ends, Stroke::new(width + 2.5, over.frame.look.plate));
     painter.line_segment(ends, Stroke::new(width, over.frame.look.tool));
+    if is_screen_taken(ui.ctx()) {
+        return;
+    }
     let grip = line.center();
     painter.circle(
         grip,

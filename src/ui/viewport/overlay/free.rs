@@ -7,6 +7,7 @@ use super::{MARGIN, Overlay};
 use crate::app::{AppState, Command, FreeWindow, ViewCommand};
 use crate::role::Role;
 use crate::ui::focus;
+use crate::ui::pictures::clickable;
 use crate::ui::widgets::segments;
 
 /// Size of the choice.
@@ -68,15 +69,14 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     let width = width.min(room);
     let corner = over.frame.rect().min + vec2(MARGIN + 4.0, MARGIN + 2.0);
     let area = Rect::from_min_size(corner, vec2(width, HEIGHT));
-    let ground = Shape::rect_filled(
-        area.expand(4.0),
-        CornerRadius::same(6),
-        over.frame.look.plate,
-    );
-    painter.add(ground);
-    shield(ui, area.expand(4.0));
-    ui.scope_builder(UiBuilder::new().max_rect(area), |ui| {
-        free_choice(ui, over.frame.state, width, commands);
+    let plate = area.expand(4.0);
+    clickable(ui, |ui| {
+        let ground = Shape::rect_filled(plate, CornerRadius::same(6), over.frame.look.plate);
+        over.painter(ui).add(ground);
+        shield(ui, plate);
+        ui.scope_builder(UiBuilder::new().max_rect(area), |ui| {
+            free_choice(ui, over.frame.state, width, commands);
+        });
     });
     let corner = area.left_bottom() + vec2(-4.0, 8.0);
     let weak = over.frame.look.weak;

@@ -18,6 +18,7 @@ mod section;
 
 pub use free::free_choice;
 
+pub(super) use self::room::FreeRoom;
 pub(super) use crate::text::grouped;
 use egui::{Align2, FontId, Painter, Rect, Ui};
 
@@ -29,6 +30,7 @@ use super::picture::Hit;
 use crate::app::Command;
 use crate::colormap::ColorScale;
 use crate::role::Role;
+use crate::ui::pictures::clickable;
 use crate::ui::theme::{Look, color};
 
 /// Air between the edge of the window and what lies over it.
@@ -90,7 +92,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     marks::show(ui, over, legend);
     cube::show(ui, over, commands);
     header::show(ui, over);
-    header::buttons(ui, over, commands);
+    clickable(ui, |ui| header::buttons(ui, over, commands));
     let has_banner = banner::show(ui, over, commands);
     let sentence = freedom::sentence(ui, over, has_banner);
     let banner = has_banner.then_some(banner::TOP);

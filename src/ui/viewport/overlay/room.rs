@@ -1,8 +1,9 @@
-//! Which part of a window's picture is free of what lies over it, so that parts are fitted into that.
+//! Which part of a window's picture is free of what lies over it, so that parts are fitted into that and letters are
+//! seen whole.
 
-use egui::Rect;
+use egui::{Rect, Ui, vec2};
 
-use super::{MARGIN, Overlay, cube, free, header, marks};
+use super::{MARGIN, Overlay, cube, free, header, legend, marks};
 use crate::app::{Command, ViewCommand, ViewRoom};
 use crate::geometry::camera::Covered;
 
@@ -63,6 +64,38 @@ fn cover(covered: &mut Covered, legend: Rect, window: Rect) {
         return;
     }
     covered.above = share(legend.bottom() - window.top(), window.height());
+}
+
+/// The places of a window that nothing lies over, as it was drawn last.
+pub(in crate::ui::viewport) struct FreeRoom {
+    /// Below what lies along the upper edge and above what lies along the lower one.
+    between: Rect,
+    /// The cube and the legend.
+    taken: Vec<Rect>,
+}
+
+impl FreeRoom {
+    /// That of a window before the rest is drawn over it.
+    pub fn of(ui: &Ui, over: &Overlay<'_>) -> Self {
+        let window = over.frame.rect();
+        let covered = over.frame.state.view.rooms.get(over.role()).covered;
+        let at = |x: f64, y: f64| window.lerp_inside(vec2(x as f32, y as f32));
+        let [width, height] = covered.corner;
+        let corner = Rect::from_min_max(at(0.0, 1.0 - height), at(width, 1.0));
+        Self {
+            between: Rect::from_min_max(at(0.0, covered.top), at(1.0, 1.0 - covered.bottom)),
+            taken: legend::last_place(ui, over)
+                .into_iter()
+                .chain([corner])
+                .collect(),
+        }
+    }
+
+    /// True if all of a place is free.
+    pub fn holds(&self, place: Rect) -> bool {
+        let is_taken = |taken: &Rect| taken.intersects(place);
+        self.between.contains_rect(place) && !self.taken.iter().any(is_taken)
+    }
 }
 
 fn share(points: f32, of: f32) -> f64 {

@@ -5,6 +5,7 @@ use egui::{CursorIcon, PointerButton, Pos2, Rect, Sense, Stroke, Ui, Vec2, Widge
 use super::Overlay;
 use crate::app::{Command, InspectCommand, SectionView};
 use crate::geometry::{Plane, Point3};
+use crate::ui::pictures::is_screen_taken;
 use crate::ui::viewport::navigation::{pos_of, screen_of};
 
 /// Radius of the handle and length of its arrow.
@@ -47,7 +48,9 @@ pub(super) fn handle(ui: &Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
         }
     }
     let is_held = response.hovered() || response.dragged();
-    paint(ui, over, at, way, is_held);
+    if !is_screen_taken(ui.ctx()) {
+        paint(ui, over, at, way, is_held);
+    }
     response.on_hover_text("Drag: along the normal\nRight drag: tilt");
 }
 

@@ -12,6 +12,7 @@ use crate::colormap::ColorScale;
 use crate::report::distances::{COMPARED_P95, COMPARED_RMS};
 use crate::role::Role;
 use crate::text::capital;
+use crate::ui::pictures::clickable;
 use crate::ui::theme::{Palette, color};
 use crate::ui::typed::{Takes, told_field};
 use crate::ui::viewport::overlay::Overlay;
@@ -97,7 +98,7 @@ pub(super) fn slim_freshness(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec
     if freshness == Freshness::OutOfDate && state.jobs.locking_job().is_none() {
         let button = Button::new(RichText::new("Update").size(11.0)).small();
         let can = state.can_match().is_ok();
-        if ui.add_enabled(can, button).clicked() {
+        if clickable(ui, |ui| ui.add_enabled(can, button)).clicked() {
             commands.push(InspectCommand::Update.into());
         }
     }
@@ -191,7 +192,7 @@ pub(super) fn freshness(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Comm
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let button = Button::new(RichText::new("Update").size(11.5)).small();
                 let can = over.frame.state.can_match().is_ok();
-                if ui.add_enabled(can, button).clicked() {
+                if clickable(ui, |ui| ui.add_enabled(can, button)).clicked() {
                     commands.push(InspectCommand::Update.into());
                 }
             });

@@ -5,6 +5,7 @@ use egui::{Rect, RichText, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 use super::bar::Grip;
 use crate::colormap::ColorScale;
 use crate::text::{length, signed};
+use crate::ui::pictures::{clickable, is_screen_taken};
 use crate::ui::typed::{Takes, told_field};
 use crate::ui::viewport::overlay::Overlay;
 
@@ -126,10 +127,11 @@ fn drag_end(
         is_held,
         color,
     } = Grip::new(ui, over, at, &format!("{} of the colours", limit.name()));
-    let reach = if is_held { 3.0 } else { 2.0 };
-    let line = bar.left() - reach..=bar.right() + reach;
-    ui.painter()
-        .hline(line, y, Stroke::new(if is_held { 3.0 } else { 2.0 }, color));
+    if !is_screen_taken(ui.ctx()) {
+        let width = if is_held { 3.0 } else { 2.0 };
+        let line = bar.left() - width..=bar.right() + width;
+        ui.painter().hline(line, y, Stroke::new(width, color));
+    }
     if !response.dragged() {
         return None;
     }
@@ -162,7 +164,12 @@ pub(super) fn is_automatic_asked(ui: &Ui, over: &Overlay<'_>, bar: Rect) -> bool
 /// Whether what lies beyond the limits is drawn.
 pub(super) fn hide_box(ui: &mut Ui, over: &Overlay<'_>, hides_beyond: &mut bool) {
     let text = RichText::new("Hide outside the limits").size(11.5);
-    let response = ui.checkbox(hides_beyond, text);
+    let response = if *hides_beyond {
+        // It says in a picture too that not everything is drawn.
+        ui.checkbox(hides_beyond, text)
+    } else {
+        clickable(ui, |ui| ui.checkbox(hides_beyond, text))
+    };
     let name = format!("Hide outside the limits ({})", over.role().word());
     let hint = "Draws only what has a value between limits that were set by hand, in both windows; places without a \
         value stay, and so does everything while the limits are automatic";

@@ -6,6 +6,7 @@ use egui::{Button, PopupCloseBehavior, RichText, Ui};
 use crate::app::{Coloring, Command, Display, ViewCommand};
 use crate::colormap::ColorMap;
 use crate::role::Role;
+use crate::ui::pictures::clickable;
 use crate::ui::viewport::overlay::Overlay;
 
 /// Plain colours to choose from.
@@ -27,7 +28,8 @@ pub(super) fn maps(ui: &mut Ui, over: &Overlay<'_>, values: Values, commands: &m
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let button = Button::new(RichText::new("Colours").size(11.5)).small();
     let mut display = over.frame.state.view.display.clone();
-    let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
+    let menu = MenuButton::from_button(button).config(config);
+    let choices_ui = |ui: &mut Ui| {
         ui.visuals_mut().override_text_color = None;
         ui.set_min_width(190.0);
         if values == Values::Deviation {
@@ -37,7 +39,8 @@ pub(super) fn maps(ui: &mut Ui, over: &Overlay<'_>, values: Values, commands: &m
         choices(ui, &mut display.coloring, values);
         ui.separator();
         automatic(ui, over, &mut display, values);
-    });
+    };
+    let (response, _) = clickable(ui, |ui| menu.ui(ui, choices_ui));
     let name = format!("Colour map ({})", over.role().word());
     response
         .on_hover_text("Colours, bands, pattern")

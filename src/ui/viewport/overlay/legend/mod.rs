@@ -18,6 +18,7 @@ use crate::app::{Command, MapPicture, file_names};
 use crate::colormap::ColorScale;
 use crate::pipeline::forming_values::LayerChoice;
 use crate::text::{inside, tick_number};
+use crate::ui::pictures::clickable;
 use crate::ui::viewport::fields::FieldKind;
 
 /// Width of what is inside the plate, and of the folded one; air beside it.
@@ -131,7 +132,7 @@ fn behind_button(ui: &mut Ui, over: &Overlay<'_>, width: f32, add: impl FnOnce(&
     let builder = UiBuilder::new()
         .max_rect(place)
         .layout(Layout::right_to_left(Align::Center));
-    ui.scope_builder(builder, |ui| {
+    let button_ui = |ui: &mut Ui| {
         let text = egui::RichText::new("Legend").size(11.0);
         let button = egui::Button::new(text).fill(over.frame.look.plate.to_opaque());
         let close = egui::PopupCloseBehavior::CloseOnClickOutside;
@@ -147,7 +148,8 @@ fn behind_button(ui: &mut Ui, over: &Overlay<'_>, width: f32, add: impl FnOnce(&
         response
             .on_hover_text("What the colours mean")
             .accessible_name(name);
-    });
+    };
+    clickable(ui, |ui| ui.scope_builder(builder, button_ui));
 }
 
 /// True in a window where names of parts and a legend have no room beside each other.
@@ -298,7 +300,7 @@ fn fold(ui: &mut Ui, over: &Overlay<'_>) {
         (">", "Fold the legend")
     };
     let button = egui::Button::new(egui::RichText::new(sign).size(11.0)).small();
-    let response = ui.add(button).on_hover_text(name);
+    let response = clickable(ui, |ui| ui.add(button)).on_hover_text(name);
     let name = format!("{name} ({})", over.role().word());
     if response.accessible_name(name).clicked() {
         let id = fold_id(ui, over);
