@@ -6,8 +6,8 @@ use egui_kittest::kittest::Queryable as _;
 use shapematch::app::{Dialog, ExportCommand, PictureChoice, PictureSize, PictureWindows};
 use shapematch::ui::Shell;
 
-use super::layout::{texts, wait_for};
-use super::story::{click, finish, matched, window};
+use super::layout::{texts, with_legend};
+use super::story::{click, finish, window};
 use super::typed::type_into;
 
 #[test]
@@ -84,12 +84,7 @@ fn enter_in_the_dialog_of_a_picture_saves_it() {
 #[test]
 fn a_picture_with_its_legend_has_no_buttons() {
     let folder = tempfile::tempdir().unwrap();
-    let mut window = matched();
-    click(&mut window, "Move over");
-    finish(&mut window);
-    wait_for(&mut window, "Unfold the legend (stamped)");
-    click(&mut window, "Unfold the legend (stamped)");
-    window.run_steps(4);
+    let mut window = with_legend();
     let n_drawn = |window: &Harness<'static, Shell>, names: &[&str]| {
         let texts = texts(window).into_iter();
         texts.filter(|text| names.contains(&&*text.text)).count()

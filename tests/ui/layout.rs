@@ -613,8 +613,19 @@ pub(super) fn point_at_crash_part<T>(
     None
 }
 
+/// Matched parts in one window, the other one with the deviation and its whole legend.
+pub(super) fn with_legend() -> Window {
+    let mut window = matched();
+    click(&mut window, "Move over");
+    finish(&mut window);
+    wait_for(&mut window, "Unfold the legend (stamped)");
+    click(&mut window, "Unfold the legend (stamped)");
+    window.run_steps(4);
+    window
+}
+
 /// The colours of a window are worked out in the background.
-pub(super) fn wait_for(window: &mut Window, label: &str) {
+fn wait_for(window: &mut Window, label: &str) {
     let begin = Instant::now();
     while window.query_by_label(label).is_none() {
         assert!(begin.elapsed() < Duration::from_secs(120), "no {label}");
@@ -695,12 +706,7 @@ fn covers_nothing(window: &Window, what: &str, role: Role) {
 /// That a deviation is out of date is said where it moves neither the fields nor the bar.
 #[test]
 fn the_legend_stays_in_place_while_the_deviation_is_measured_again() {
-    let mut window = matched();
-    click(&mut window, "Move over");
-    finish(&mut window);
-    wait_for(&mut window, "Unfold the legend (stamped)");
-    click(&mut window, "Unfold the legend (stamped)");
-    window.run_steps(4);
+    let mut window = with_legend();
     let role = egui::accesskit::Role::SpinButton;
     let field = |window: &Window| {
         let field = window.get_by_role_and_label(role, "Upper limit (stamped)");
