@@ -31,6 +31,9 @@ pub struct Ambiguity {
     pub clarity: Clarity,
     /// Score of the second-best distinct pose over the best, if one was near.
     pub ratio: Option<f64>,
+    /// Whether the ratio is what surfaces, borders and holes say, and no measured error.
+    #[serde(default)]
+    pub by_shape: bool,
     /// Equivalent positions, the result included.
     pub n_equivalent: usize,
     /// How the second-best pose differs from the best, if it is nearly as good.
@@ -134,7 +137,8 @@ impl Ambiguity {
 
     /// Assesses alternatives sorted by their error over that of the best pose.
     pub fn of(alternatives: &[Alternative]) -> Self {
-        let ratio = alternatives.first().map(|a| a.score_ratio);
+        let second = alternatives.first();
+        let ratio = second.map(|other| other.score_ratio);
         let clarity = match ratio {
             Some(ratio) if ratio < AMBIGUOUS_BELOW => Clarity::Ambiguous,
             Some(ratio) if ratio < VERIFY_BELOW => Clarity::Verify,
@@ -146,6 +150,7 @@ impl Ambiguity {
         Self {
             clarity,
             ratio,
+            by_shape: second.is_some_and(|other| other.by_shape),
             n_equivalent: 1 + equivalent.count(),
             twin: None,
         }

@@ -5,9 +5,10 @@
 
 use std::cmp::Ordering;
 
-use super::ambiguity::Clarity;
+use super::ambiguity::{Ambiguity, Clarity};
 use super::assessment::Assessment;
 use super::borders::HOLES_THAT_HOLD;
+use super::coverage::Coverage;
 use super::pose::{PoseKind, PoseStatement};
 use super::reason::Reason;
 use super::shape::{BorderFit, OVERHANGS, ShapeReason, ShapeStatement, only_overhangs};
@@ -88,7 +89,7 @@ pub(super) fn decide(assessment: &mut Assessment, grounds: &Grounds<'_>) {
     let of_shape = [
         hand,
         scale(assessment, most_scaled),
-        overlap(assessment, shape),
+        overlap(&assessment.coverage, shape, is_held(assessment)),
         elsewhere(shape),
     ];
     let found = of_pose.into_iter().chain(of_shape).chain([read]).flatten();
@@ -253,16 +254,24 @@ fn shares_a_piece(shape: &ShapeStatement) -> bool {
 }
 
 /// Parts of which each has a large piece that the other lacks, unless the surface they share is one and holds the
-/// pose by itself, and the rest of the smaller part lies beyond the borders of the other.
-fn overlap(assessment: &Assessment, shape: &ShapeStatement) -> Option<Reason> {
-    let coverage = &assessment.coverage;
+/// pose by itself, and the rest of the smaller part lies beyond the borders of the other. Where one lies on the other
+/// and much of it without a counterpart, normals differ.
+fn overlap(coverage: &Coverage, shape: &ShapeStatement, is_held: bool) -> Option<Reason> {
     let overhangs = shape.overhang;
     let only_overhangs = overhangs.is_some_and(|share| only_overhangs(shape.met, share));
-    let is_one = shape.reasons.is_empty() && only_overhangs && is_held(assessment);
-    (shape.met < ENOUGH_MET && !is_one).then_some(Reason::BothOverhang {
-        source: coverage.source_on_target.overlap,
-        target: coverage.target_on_source.overlap,
-    })
+    let is_one = shape.reasons.is_empty() && only_overhangs && is_held;
+    let hardly_meets = |reason: &ShapeReason| matches!(reason, ShapeReason::HardlyMet { .. });
+    let is_told = shape.reasons.iter().any(hardly_meets) && !shares_a_piece(shape);
+    if shape.met >= ENOUGH_MET || is_one {
+        None
+    } else if coverage.better_overlap() < OVERHANGS {
+        Some(Reason::BothOverhang {
+            source: coverage.source_on_target.overlap,
+            target: coverage.target_on_source.overlap,
+        })
+    } else {
+        (!is_told).then_some(Reason::PartlyMet { share: shape.met })
+    }
 }
 
 /// Parts of which the smaller one lies in places where the other is not, while it does not end there, and neither
@@ -319,12 +328,18 @@ fn uncertainty(assessment: &Assessment) -> Option<Reason> {
 
 fn ambiguity(assessment: &Assessment) -> Option<Reason> {
     let ambiguity = &assessment.ambiguity;
-    let (score_ratio, twin) = (ambiguity.ratio?, ambiguity.twin);
+    let Ambiguity { by_shape, twin, .. } = *ambiguity;
+    let score_ratio = ambiguity.ratio?;
     match ambiguity.clarity {
         Clarity::Clear => None,
-        Clarity::Verify => Some(Reason::NearAlternative { score_ratio, twin }),
+        Clarity::Verify => Some(Reason::NearAlternative {
+            score_ratio,
+            by_shape,
+            twin,
+        }),
         Clarity::Ambiguous => Some(Reason::EqualAlternative {
             score_ratio,
+            by_shape,
             twin,
             n_equivalent: ambiguity.n_equivalent,
         }),
@@ -361,6 +376,7 @@ fn ending(outcome: &MatchOutcome) -> Option<Reason> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::assess::OneSided;
     use crate::geometry::Point3;
 
     fn shape(remainder: f64, reasons: &[ShapeReason]) -> ShapeStatement {
@@ -408,6 +424,37 @@ mod tests {
             limit: 5.0,
         };
         assert!(!shares(0.4, Some(0.59), &[hardly, bend]) && !shares(0.6, Some(0.4), &[bend]));
+    }
+
+    #[test]
+    fn of_a_part_that_lies_on_the_other_it_is_not_said_that_neither_contains_the_other() {
+        let told = |overlaps: [f64; 2], met, reasons: &[ShapeReason]| {
+            let [source_on_target, target_on_source] = overlaps.map(|overlap| OneSided {
+                overlap,
+                rmse: 0.1,
+                p95: 0.2,
+                max: 0.4,
+                max_anywhere: 9.0,
+            });
+            let coverage = Coverage {
+                source_on_target,
+                target_on_source,
+                limit: 1.0,
+            };
+            let mut shape = shape(0.1, reasons);
+            shape.met = met;
+            overlap(&coverage, &shape, true)
+        };
+        let both = told([0.8, 0.7], 0.7, &[]);
+        assert!(matches!(both, Some(Reason::BothOverhang { .. })));
+        assert_eq!(
+            told([1.0, 1.0], 0.7, &[]),
+            Some(Reason::PartlyMet { share: 0.7 })
+        );
+        assert_eq!(told([1.0, 1.0], 0.8, &[]), None);
+        // That it hardly meets says so already.
+        let hardly = ShapeReason::HardlyMet { share: 0.4 };
+        assert_eq!(told([1.0, 0.9], 0.4, &[hardly]), None);
     }
 
     #[test]

@@ -67,6 +67,12 @@ pub enum Reason {
         #[serde(with = "any_float")]
         target: f64,
     },
+    /// One part lies on the other, and much of the smaller one without a counterpart.
+    PartlyMet {
+        /// Fraction of the smaller part's area that has one.
+        #[serde(with = "any_float")]
+        share: f64,
+    },
     /// A piece of the smaller part lies neither on the other part nor beyond its borders, and neither borders nor holes
     /// confirm the pose.
     Elsewhere {
@@ -103,6 +109,9 @@ pub enum Reason {
         /// Its score over the result's.
         #[serde(with = "any_float")]
         score_ratio: f64,
+        /// Whether the ratio is what surfaces, borders and holes say, and no measured error.
+        #[serde(default)]
+        by_shape: bool,
         /// How it differs from the result, if that was measured.
         twin: Option<Twin>,
     },
@@ -111,6 +120,9 @@ pub enum Reason {
         /// Its score over the result's.
         #[serde(with = "any_float")]
         score_ratio: f64,
+        /// Whether the ratio is what surfaces, borders and holes say, and no measured error.
+        #[serde(default)]
+        by_shape: bool,
         /// How it differs from the result, if that was measured.
         twin: Option<Twin>,
         /// Equivalent poses, the result included.
@@ -179,6 +191,7 @@ impl Reason {
             | Self::PairScale { .. }
             | Self::Uncertain { .. }
             | Self::BothOverhang { .. }
+            | Self::PartlyMet { .. }
             | Self::Elsewhere { .. }
             | Self::Sliding { .. }
             | Self::NearAlternative { .. }

@@ -12,6 +12,10 @@ use crate::geometry::{Point3, Vector3};
 use crate::registration::{Termination, UnitGuess};
 use crate::text::{Lengths, counted, fixed, parts_by_id, percent, vector};
 
+mod ratio;
+
+pub use ratio::{as_well, beside, fit_beside, fit_of_hand, likely_beside};
+
 /// Rotations smaller than this are not mentioned.
 const NO_ROTATION: f64 = 3.0 * PI / 180.0;
 /// A direction is that of an axis if it lies within about a degree of it.
@@ -76,6 +80,7 @@ impl Reason {
                 "neither part contains the other: {} overlap",
                 both_overlaps(*source, *target)
             ),
+            Self::PartlyMet { share } => partly_met(*share),
             Self::Elsewhere { share } => elsewhere(*share),
             Self::Sliding {
                 motion,
@@ -87,23 +92,24 @@ impl Reason {
                 format!("the pose may be off by {by}, {along}, more than {limit}")
             }
             Self::Shape { difference } => difference.words(lengths),
-            Self::NearAlternative { score_ratio, twin } => format!(
-                "{} the part fits {} ({}): check which pose is meant",
-                another_pose(*twin, lengths),
-                as_well(*score_ratio),
-                error_beside(*score_ratio)
-            ),
+            Self::NearAlternative {
+                score_ratio,
+                by_shape,
+                twin,
+            } => {
+                let fit = other_fit(*twin, (*score_ratio, *by_shape), lengths);
+                format!("{fit}: check which pose is meant")
+            }
             Self::EqualAlternative {
                 score_ratio,
+                by_shape,
                 twin,
                 n_equivalent,
-            } => format!(
-                "ambiguous: {} the part fits {} ({}); {} in all",
-                another_pose(*twin, lengths),
-                as_well(*score_ratio),
-                error_beside(*score_ratio),
-                counted(*n_equivalent, "pose")
-            ),
+            } => {
+                let fit = other_fit(*twin, (*score_ratio, *by_shape), lengths);
+                let poses = counted(*n_equivalent, "pose");
+                format!("ambiguous: {fit}; {poses} in all")
+            }
             Self::AlikeParts { ids } => format!(
                 "the stamped part fits {} about as well: choose the part it belongs to",
                 parts_by_id(ids)
@@ -151,14 +157,6 @@ fn rivals_words(were_sought: bool) -> &'static str {
     }
 }
 
-/// The error of another pose beside that of the best: "error 8 % higher", "error 5.6 × lower".
-pub fn error_beside(score_ratio: f64) -> String {
-    match beside(score_ratio) {
-        equal if equal == EQUAL => format!("{equal} error"),
-        differs => format!("error {differs}"),
-    }
-}
-
 fn opposite_hand(fit: &str) -> String {
     format!(
         "looks like the opposite-hand part ({fit} with that hand): match with it, or choose the other part"
@@ -167,44 +165,6 @@ fn opposite_hand(fit: &str) -> String {
 
 fn near_mirror_image(fit: &str) -> String {
     format!("the part is nearly its own mirror image: mirrored, {fit}")
-}
-
-/// How the opposite hand fits better.
-pub fn fit_of_hand(score_ratio: f64, by_borders: bool) -> String {
-    if by_borders {
-        "more borders and holes lie together".to_owned()
-    } else {
-        error_beside(score_ratio)
-    }
-}
-
-/// How well another pose fits beside the best: "equally well", "nearly as well".
-pub fn as_well(score_ratio: f64) -> &'static str {
-    match score_ratio {
-        // The difference rounds to 0 %.
-        ratio if (ratio - 1.0).abs() < 0.005 => "equally well",
-        ratio if ratio < 1.0 => "at least as well",
-        _ => "nearly as well",
-    }
-}
-
-const EQUAL: &str = "equal";
-
-/// The same without what it is said of: "8 % higher", "5.6 × lower", "equal".
-pub fn beside(score_ratio: f64) -> String {
-    let (times, how) = if score_ratio < 1.0 {
-        (score_ratio.recip(), "lower")
-    } else {
-        (score_ratio, "higher")
-    };
-    match times {
-        t if t < 1.0005 => EQUAL.to_owned(),
-        // Less than half a percent is said with the digit that tells it from none.
-        t if t < 1.005 => format!("{:.1} % {how}", 100.0 * (score_ratio - 1.0).abs()),
-        t if t < 2.0 => format!("{:.0} % {how}", 100.0 * (score_ratio - 1.0).abs()),
-        t if t.is_finite() => format!("{t:.1} × {how}"),
-        _ => format!("far {how}"),
-    }
 }
 
 impl Termination {
@@ -263,12 +223,7 @@ impl ShapeReason {
             Self::HardlyMet { .. } | Self::Holes { .. } => [String::new(), String::new()],
         };
         match self {
-            Self::HardlyMet { share } => {
-                format!(
-                    "only {} of the smaller part has a counterpart with like normals",
-                    percent(*share)
-                )
-            }
+            Self::HardlyMet { share } => partly_met(*share),
             Self::Bent { .. } => {
                 format!("the parts are bent against each other by {by}, more than {limit}")
             }
@@ -497,11 +452,28 @@ fn rounded(times: f64) -> String {
     fixed(times, if times < 100.0 { 1 } else { 0 })
 }
 
+fn partly_met(share: f64) -> String {
+    format!(
+        "only {} of the smaller part has a counterpart with like normals",
+        percent(share)
+    )
+}
+
 fn both_overlaps(source: f64, target: f64) -> String {
     format!(
         "{} of the stamped part and {} of the crash part",
         percent(source),
         percent(target)
+    )
+}
+
+/// How the part fits in another pose: "rotated by 180° the part fits nearly as well (error 8 % higher)".
+fn other_fit(twin: Option<Twin>, (ratio, by_shape): (f64, bool), lengths: Lengths) -> String {
+    format!(
+        "{} the part fits {} ({})",
+        another_pose(twin, lengths),
+        as_well(ratio),
+        fit_beside(ratio, by_shape)
     )
 }
 

@@ -99,9 +99,14 @@ impl MatchRun {
     pub fn told_alternative(&self) -> Option<String> {
         let number = self.alternative? + 2;
         let best = self.outcome.alternatives.first()?;
-        let error = assess::error_beside(best.score_ratio);
+        let which = if best.by_shape {
+            "which is"
+        } else {
+            "with that,"
+        };
+        let fit = assess::fit_beside(best.score_ratio, best.by_shape);
         Some(format!(
-            "pose {number} of the match, not the best (with that, {error})"
+            "pose {number} of the match, not the best ({which} {fit})"
         ))
     }
 }
@@ -220,12 +225,13 @@ pub fn with_alternative(
     let Some(other) = outcome.alternatives.get_mut(alternative) else {
         return Ok(run.clone());
     };
-    let ratio = other.score_ratio;
+    let (ratio, by_shape) = (other.score_ratio, other.by_shape);
     let best = outcome.target_from_source;
     outcome.target_from_source = std::mem::replace(&mut other.target_from_source, best);
     other.score_ratio = 1.0;
     for other in &mut outcome.alternatives {
         other.score_ratio /= ratio;
+        other.by_shape |= by_shape;
     }
     outcome
         .alternatives

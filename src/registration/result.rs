@@ -129,6 +129,9 @@ pub struct Alternative {
     /// How much worse than the result, 1 = equally good; the larger one of both directions.
     #[serde(with = "any_float")]
     pub score_ratio: f64,
+    /// Whether the ratio is what surfaces, borders and holes say on the full meshes, and no measured error.
+    #[serde(default)]
+    pub by_shape: bool,
     /// The start it came from.
     pub start: usize,
 }

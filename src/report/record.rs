@@ -186,6 +186,8 @@ pub struct AlternativeRecord {
     pub matrix: [[f64; 4]; 4],
     /// Its score over the result's: 1 is equally good, larger is worse.
     pub score_ratio: f64,
+    /// Whether the ratio is what surfaces, borders and holes say, and no measured error.
+    pub by_shape: bool,
 }
 
 /// Fractions of area whose nodes lie within `limit` of the other part.
@@ -336,6 +338,7 @@ impl MatchRecord {
         let alternatives = outcome.alternatives.iter().map(|other| AlternativeRecord {
             matrix: rows(&other.target_from_source),
             score_ratio: other.score_ratio,
+            by_shape: other.by_shape,
         });
         Self {
             schema: "shapematch.match/3",

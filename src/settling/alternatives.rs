@@ -133,6 +133,7 @@ impl Beside<'_> {
             Some(score_ratio) => Alternative {
                 target_from_source: candidate.pose,
                 score_ratio,
+                by_shape: true,
                 ..other
             },
             None => other,

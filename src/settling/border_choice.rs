@@ -5,7 +5,7 @@ mod hand;
 
 use rayon::prelude::*;
 
-use super::chosen_pose::{ChosenPose, as_likely, distinct};
+use super::chosen_pose::{ChosenPose, as_likely, at_least, distinct};
 use super::context::PairContext;
 use super::free_motion_search::poses_along;
 use super::holes;
@@ -527,6 +527,7 @@ impl<'a> PoseComparison<'a> {
         most.map(|pose| Alternative {
             target_from_source: pose.pose,
             score_ratio: FEWER_HOLES,
+            by_shape: true,
             start,
         })
     }
@@ -557,10 +558,7 @@ impl<'a> PoseComparison<'a> {
             } else {
                 0.0
             };
-            Alternative {
-                score_ratio: other.score_ratio.max(by_borders).max(by_holes),
-                ..*other
-            }
+            at_least(*other, f64::max(by_borders, by_holes))
         };
         let little = NO_GAP * self.remainder();
         let slid = rivals.iter().map(|rival| Alternative {

@@ -69,14 +69,24 @@ pub(super) fn as_likely(target_from_source: Similarity, outcome: &MatchOutcome) 
     Alternative {
         target_from_source,
         score_ratio: 1.0,
+        by_shape: true,
         start: outcome.winner,
     }
 }
 
 /// An alternative, as bad as it counts where the shapes differ more under it.
 pub(super) fn beaten(other: Alternative) -> Alternative {
+    at_least(other, MORE_DIFFERENCES)
+}
+
+/// An alternative that the shapes rate at `ratio` or worse.
+pub(super) fn at_least(other: Alternative, ratio: f64) -> Alternative {
+    if other.score_ratio >= ratio {
+        return other;
+    }
     Alternative {
-        score_ratio: other.score_ratio.max(MORE_DIFFERENCES),
+        score_ratio: ratio,
+        by_shape: true,
         ..other
     }
 }

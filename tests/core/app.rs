@@ -358,6 +358,7 @@ fn made_up_match(kind: JobKind) -> Result<Arc<MatchRun>, String> {
     let alternative = |x: f64| Alternative {
         target_from_source: shifted(x),
         score_ratio: 1.0 + 0.01 * x,
+        by_shape: false,
         start: 0,
     };
     let outcome = MatchOutcome {

@@ -462,16 +462,19 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
             along: PartDirection::Along,
         },
         Reason::BothOverhang { source, target },
+        Reason::PartlyMet { share: 0.6 },
         Reason::Sliding {
             motion,
             held_across: Some(0.5),
         },
         Reason::NearAlternative {
             score_ratio: 1.2,
+            by_shape: false,
             twin,
         },
         Reason::EqualAlternative {
             score_ratio: 1.01,
+            by_shape: true,
             twin: None,
             n_equivalent: 2,
         },
@@ -860,6 +863,7 @@ fn a_channel_whose_ends_coincide_is_as_likely_as_one_whose_walls_do() {
     outcome.alternatives = vec![Alternative {
         target_from_source: other,
         score_ratio: 7.0,
+        by_shape: false,
         start: outcome.winner,
     }];
     let chosen = chosen_by_shape(&context, &outcome).unwrap();

@@ -404,6 +404,7 @@ fn an_alternative_is_measured_anew_before_it_is_written() {
     outcome.alternatives = vec![shapematch::registration::Alternative {
         target_from_source: other,
         score_ratio: 1.2,
+        by_shape: false,
         start: 0,
     }];
     run.outcome = Arc::new(outcome);

@@ -92,6 +92,7 @@ fn its_uncertainty_is_a_picture_and_its_rivals_are_named() {
     outcome.alternatives = vec![shapematch::registration::Alternative {
         target_from_source: super::app::shifted(3.0).after(&run.crash_from_stamped),
         score_ratio: 1.05,
+        by_shape: false,
         start: 0,
     }];
     let other = outcome.alternatives[0].target_from_source;

@@ -5,7 +5,7 @@ use crate::app::{
     Action, AppState, BottomTab, Command, MatchCommand, MatchResult, PartCommand, ViewCommand,
 };
 use crate::assess::{
-    Assessment, Clarity, Reason, ShapeReason, Twin, Verdict, as_well, error_beside, fit_of_hand,
+    Assessment, Clarity, Reason, ShapeReason, Twin, Verdict, as_well, fit_beside, fit_of_hand,
 };
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::registration::{Hand, Method, StartMethod};
@@ -238,7 +238,7 @@ impl AppState {
         if ambiguity.clarity == Clarity::Clear {
             return None;
         }
-        let (twin, ratio, remedy) = if let Some(index) = result.alternative {
+        let (twin, ratio, by_shape, remedy) = if let Some(index) = result.alternative {
             let shown = run.outcome.alternatives.get(index)?;
             let source = &self.document.part(Role::Stamped)?.loaded.surface;
             let twin = Twin::of(source, &shown.target_from_source, &run.crash_from_stamped);
@@ -246,10 +246,16 @@ impl AppState {
             let remedy = ("Show the best pose".to_owned(), vec![back.into()]);
             let is_possible = Action::NextAlternative.enabled(self).is_ok();
             let remedy = is_possible.then_some(remedy);
-            (Some(twin), shown.score_ratio.recip(), remedy)
+            (
+                Some(twin),
+                shown.score_ratio.recip(),
+                shown.by_shape,
+                remedy,
+            )
         } else {
             let remedy = self.do_action(Action::NextAlternative, "Show the other pose");
-            (ambiguity.twin, ambiguity.ratio.unwrap_or(1.0), remedy)
+            let ratio = ambiguity.ratio.unwrap_or(1.0);
+            (ambiguity.twin, ratio, ambiguity.by_shape, remedy)
         };
         let how = twin.map(|twin| twin.words(self.lengths()));
         let well = as_well(ratio);
@@ -258,7 +264,7 @@ impl AppState {
             evidence: format!(
                 "{}, the part fits {well} ({}): check holes and beads.",
                 capital(how.as_deref().unwrap_or("in another pose")),
-                error_beside(ratio)
+                fit_beside(ratio, by_shape)
             ),
             remedy,
         })

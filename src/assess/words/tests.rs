@@ -1,6 +1,7 @@
 //! What the words of an assessment say, and what they leave out.
 
-use super::{as_well, error_beside};
+use super::as_well;
+use super::ratio::{error_beside, fit_beside};
 use crate::assess::{FreeMotion, FreeMotionKind, PoseKind, Reason, Verdict};
 use crate::geometry::{Point3, Vector3};
 use crate::text::Lengths;
@@ -80,6 +81,19 @@ fn ratios_are_read_as_differences_of_the_error() {
     ];
     for (ratio, words) in pairs {
         assert_eq!(error_beside(ratio), words);
+        assert_eq!(fit_beside(ratio, false), words);
+    }
+}
+
+#[test]
+fn no_error_is_told_of_poses_that_their_shapes_tell_apart() {
+    let pairs = [
+        (1.0, "as likely by its shape"),
+        (1.5, "less likely by its shape"),
+        (0.67, "more likely by its shape"),
+    ];
+    for (ratio, words) in pairs {
+        assert_eq!(fit_beside(ratio, true), words);
     }
 }
 

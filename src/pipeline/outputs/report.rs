@@ -4,7 +4,7 @@ use super::cards::cards;
 use super::record::match_record;
 use super::report_figures::FigureRenderer;
 use crate::assess::deviation::{Deviation, DeviationSettings, compare};
-use crate::assess::{Ambiguity, PoseUncertainty, Twin, error_beside};
+use crate::assess::{Ambiguity, PoseUncertainty, Twin, fit_beside};
 use crate::colormap::{ColorMap, ColorScale};
 use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
@@ -90,7 +90,7 @@ fn rivals(
         let pose = &other.target_from_source;
         let twin = Twin::of(source, &run.crash_from_stamped, pose);
         let title = format!("{}: {}", figures.len() + 2, twin.words(lengths));
-        let caption = format!("({}).", error_beside(other.score_ratio));
+        let caption = format!("({}).", fit_beside(other.score_ratio, other.by_shape));
         figures.push(renderer.rival(pose, title, caption)?);
     }
     Ok(figures)

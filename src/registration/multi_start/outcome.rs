@@ -114,6 +114,7 @@ fn alternatives(
         found.push(Alternative {
             target_from_source: pose,
             score_ratio,
+            by_shape: false,
             start: candidates[ranked.candidate].run.start_idx,
         });
     }

@@ -4,11 +4,11 @@ use maud::{Markup, html};
 
 use super::page::{block, cell, fact_table, folded, image, printable, section};
 use super::{CardsInfo, Figure, Report, charts};
-use crate::assess::beside;
 use crate::assess::deviation::OverlapClass;
+use crate::assess::{beside, likely_beside};
 use crate::geometry::{Matrix3, Similarity, Vector3};
 use crate::report::matrix::number;
-use crate::report::{MatrixForm, PoseRecord};
+use crate::report::{AlternativeRecord, MatrixForm, PoseRecord};
 use crate::role::PerRole;
 use crate::text::{fixed, percent, sentence, vector};
 
@@ -79,9 +79,7 @@ impl Report<'_> {
                 (key_figure("P95", &lengths.of(metrics.p95), "of the overlap"))
                 (key_figure("Starts that agree", &agreement, ""))
                 @match next {
-                    // The report of an alternative stands beside the best pose.
-                    Some(other) if other.score_ratio < 1.0 => (key_figure("Best pose", &beside(other.score_ratio), "error")),
-                    Some(other) => (key_figure("Next best pose", &beside(other.score_ratio), "error")),
+                    Some(other) => (next_pose(other)),
                     None if self.outcome.rivals_sought => (key_figure("Next best pose", "none near", "")),
                     None => (key_figure("Next best pose", "–", "not looked for everywhere")),
                 }
@@ -299,6 +297,21 @@ impl Report<'_> {
 
 fn key_figure(name: &str, value: &str, note: &str) -> Markup {
     html! { div { dt { (name) } dd { (value) " " small { (note) } } } }
+}
+
+/// How the next best pose fits. The report of an alternative stands beside the best one.
+fn next_pose(other: &AlternativeRecord) -> Markup {
+    let ratio = other.score_ratio;
+    let name = if ratio < 1.0 {
+        "Best pose"
+    } else {
+        "Next best pose"
+    };
+    if other.by_shape {
+        key_figure(name, likely_beside(ratio), "by its shape")
+    } else {
+        key_figure(name, &beside(ratio), "error")
+    }
 }
 
 /// The motion of a record.

@@ -7,9 +7,9 @@ use super::part_question::alike_parts_ui;
 use crate::app::{
     Action, AppState, Axis, Command, ExportCommand, MatchCommand, MatchResult, Section,
 };
-use crate::assess::{Ambiguity, Coverage, OneSided, Reason};
+use crate::assess::{Ambiguity, Coverage, OneSided, Reason, fit_beside, likely_beside};
 use crate::jobs::Stamp;
-use crate::registration::{group_starts, limits};
+use crate::registration::{Alternative, group_starts, limits};
 use crate::report::distances::{OVERLAP_HELP, OVERLAP_SPREAD};
 use crate::report::{DIRECTION, PoseRecord, few_agree_words, number, start_kinds};
 use crate::role::{PerRole, Role};
@@ -182,8 +182,8 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
             ui.with_layout(right, |ui| tolerance_ui(ui, state, result, commands));
         }
     });
-    if let Some(score_ratio) = score_ratio(result) {
-        alternative_ui(ui, state, result, score_ratio);
+    if let Some(alternative) = shown_alternative(result) {
+        alternative_ui(ui, state, result, alternative);
         return;
     }
     let is_unit_in_doubt = state.is_unit_in_doubt();
@@ -276,11 +276,11 @@ fn tolerance_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &
 }
 
 /// How an alternative fits beside the best pose, and the statements that the best pose has too.
-fn alternative_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, score_ratio: f64) {
+fn alternative_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, alternative: &Alternative) {
     let lengths = state.lengths();
     let best = &result.run.assessment.coverage;
     let (rms, p95) = (lengths.number(best.rmse()), lengths.of(best.p95()));
-    paragraph(ui, alternative_words(score_ratio)).on_hover_text(format!(
+    paragraph(ui, alternative_words(alternative)).on_hover_text(format!(
         "{} at the best pose: {rms} · {p95}",
         OVERLAP_SPREAD.name
     ));
@@ -294,19 +294,13 @@ fn alternative_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, score_rat
 }
 
 /// How well an alternative fits beside the best pose.
-fn alternative_words(score_ratio: f64) -> String {
-    let worse = whole_percent(score_ratio - 1.0);
-    if worse == whole_percent(0.0) {
-        "An alternative: it fits as well as the best pose.".to_owned()
-    } else {
-        format!("An alternative: its error is {worse} higher than that of the best pose.")
-    }
+fn alternative_words(alternative: &Alternative) -> String {
+    let fit = fit_beside(alternative.score_ratio, alternative.by_shape);
+    format!("An alternative, beside the best pose: {fit}.")
 }
 
-/// How much worse the shown alternative is than the best pose, 1 = equally good.
-fn score_ratio(result: &MatchResult) -> Option<f64> {
-    let alternatives = &result.run.outcome.alternatives;
-    Some(alternatives.get(result.alternative?)?.score_ratio)
+fn shown_alternative(result: &MatchResult) -> Option<&Alternative> {
+    result.run.outcome.alternatives.get(result.alternative?)
 }
 
 fn figures_ui(ui: &mut Ui, state: &AppState, result: &MatchResult) {
@@ -385,8 +379,11 @@ fn alternatives_ui(
         }
         let alternatives = Ambiguity::near(&result.run.outcome.alternatives);
         for (index, alternative) in alternatives.iter().enumerate() {
-            let worse = whole_percent(alternative.score_ratio - 1.0);
-            let label = format!("{} (+{worse})", index + 2);
+            let label = match alternative.by_shape {
+                true => likely_beside(alternative.score_ratio).to_owned(),
+                false => format!("+{}", whole_percent(alternative.score_ratio - 1.0)),
+            };
+            let label = format!("{} ({label})", index + 2);
             let is_on = result.alternative == Some(index);
             if chip(ui, &label, is_on).clicked() {
                 commands.push(MatchCommand::ShowAlternative(Some(index)).into());
@@ -583,13 +580,5 @@ mod tests {
         assert_eq!(found, [300.0, 300.0, 100.0]);
         let found = [(2, 2, 300.0), (3, 2, 100.0)].map(|(r, p, content)| height(r, p, content));
         assert_eq!(found, [300.0, 100.0]);
-    }
-
-    #[test]
-    fn an_equal_alternative_is_not_called_worse() {
-        let equal = "An alternative: it fits as well as the best pose.";
-        assert_eq!(alternative_words(1.0), equal);
-        assert_eq!(alternative_words(1.003), equal);
-        assert!(alternative_words(1.082).contains(&format!("{} higher", whole_percent(0.08))));
     }
 }

@@ -5,7 +5,7 @@ use egui::{Button, CornerRadius, FontId, Rect, RichText, Stroke, Ui, vec2};
 
 use super::Overlay;
 use crate::app::{Action, AppState, Command, PreviewCommand};
-use crate::assess::error_beside;
+use crate::assess::fit_beside;
 use crate::role::Role;
 use crate::ui::pictures::clickable;
 
@@ -90,7 +90,9 @@ fn poses(state: &AppState) -> Option<Banner> {
     // As card, record and report tell the poses apart.
     let shown = result.alternative;
     match shown.and_then(|index| result.run.outcome.alternatives.get(index)) {
-        Some(other) => text += &format!(" · {}", error_beside(other.score_ratio)),
+        Some(other) => {
+            text += &format!(" · {}", fit_beside(other.score_ratio, other.by_shape));
+        }
         None => text += " · the best",
     }
     let key = Action::NextAlternative.row().shortcut();
