@@ -1,6 +1,6 @@
 //! The closed borders of one part as curves, with places along them, and the size of its holes.
 
-use crate::geometry::{Border, Point3, Similarity, Vector3};
+use crate::geometry::{Border, Circle, Point3, Similarity, Vector3};
 use crate::registration::Surface;
 
 /// Edges to each side that give a ragged border its direction, as far as they are an eighth of it.
@@ -16,7 +16,7 @@ pub(super) struct BorderCurve {
     normals: Vec<Vector3>,
     /// See [`Border::center`].
     pub(super) center: Point3,
-    pub(super) circle_radius: Option<f64>,
+    pub(super) circle: Option<Circle>,
     pub(super) length: f64,
     pub(super) is_hole: bool,
 }
@@ -156,7 +156,7 @@ pub(super) fn curves_of(surface: &Surface) -> Vec<BorderCurve> {
                 .collect(),
             normals: vertices.map(|v| surface.vertex_normals()[v]).collect(),
             center: border.center,
-            circle_radius: border.circle_radius,
+            circle: border.circle,
             length: border.length,
             is_hole: border.is_hole,
         }
@@ -198,7 +198,7 @@ mod tests {
             normals: vec![Vector3::z(); points.len()],
             points,
             center: Point3::origin(),
-            circle_radius: None,
+            circle: None,
             length: 0.0,
             is_hole: true,
         }

@@ -30,7 +30,7 @@ const SEVERAL_FROM: f64 = 2.0;
 /// … and larger than that no whole car is beside one of its parts.
 const SEVERAL_TO: f64 = 500.0;
 /// Borders hold a part whose surface can slide if at least this share of the smaller part's lies on one of the other.
-const LEAST_TOGETHER: f64 = 1.0 / 3.0;
+pub(super) const LEAST_TOGETHER: f64 = 1.0 / 3.0;
 /// Of the outlines across its free motion at least this share must: one end of a part can always be brought together.
 const LEAST_ACROSS: f64 = 2.0 / 3.0;
 /// Parts whose sizes differ by more than this factor are not in one unit, whatever the units are.

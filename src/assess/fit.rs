@@ -11,6 +11,7 @@ use super::small_motion::{Six, Unknown, motion_of};
 use crate::geometry::{Point3, Similarity, Vector3};
 
 pub(super) use bends::Bends;
+use bends::N_BENDS;
 pub(super) use unknowns::{N_SMOOTH, Row};
 use unknowns::{bends_of, joined};
 
@@ -31,6 +32,9 @@ pub(crate) struct Fit {
     /// How far the source lies from where it belongs, bends counted as part of its shape; turns in
     /// lengths at the contacts' radius.
     pub(super) rigid: Six,
+    /// How far each of the bends, of size 1 at the border, moves the source from where it belongs if the pose is found as
+    /// if there were no bends.
+    pub(super) pulled_by: [Six; N_BENDS],
     pub(super) offset: f64,
     pub(super) is_separable: bool,
     bends: Bends,
@@ -128,6 +132,7 @@ impl Fit {
         let mut left: Vec<f64> = contacts.list.iter().map(|c| c.gap).collect();
         let mut found = Row::zeros();
         let mut is_separable = false;
+        let mut equations = NormalEquations::<N_SMOOTH>::default();
         for round in 0..2 * ROUNDS {
             let has_offset = round < ROUNDS;
             if round == ROUNDS {
@@ -138,7 +143,7 @@ impl Fit {
                 left = contacts.list.iter().map(|c| c.gap).collect();
             }
             let weights = robust_weights(&left, &areas, evidence.noise);
-            let mut equations = NormalEquations::<N_SMOOTH>::default();
+            equations = NormalEquations::default();
             for ((row, contact), weight) in places.iter().zip(&contacts.list).zip(weights) {
                 equations.add(row, contact.gap, weight);
             }
@@ -174,11 +179,16 @@ impl Fit {
                 wider: pair.wider,
             }
         });
+        let rigid_parts = bends.rigid_parts(contacts);
+        let sizes = bends_of(&found);
+        let of_bends = rigid_parts.iter().zip(&sizes);
+        let of_bends: Six = of_bends.map(|(part, size)| part * *size).sum();
         Self {
             smooth: smooth.collect(),
             borders: if explains { beside } else { as_they_are },
             holes: holes.collect(),
-            rigid: motion_of(&found) + bends.rigid_part(&bends_of(&found), contacts),
+            rigid: motion_of(&found) + of_bends,
+            pulled_by: pulled_by(&equations, &rigid_parts),
             left,
             offset,
             is_separable,
@@ -186,6 +196,21 @@ impl Fit {
             found,
         }
     }
+}
+
+/// What a pose without bends makes of each of the bends beyond the rigid motion that is in it.
+fn pulled_by(
+    equations: &NormalEquations<N_SMOOTH>,
+    rigid_parts: &[Six; N_BENDS],
+) -> [Six; N_BENDS] {
+    let matrix = &equations.matrix;
+    std::array::from_fn(|k| {
+        let alone = NormalEquations::<6> {
+            matrix: matrix.fixed_view::<6, 6>(0, 0).into(),
+            right: matrix.fixed_view::<6, 1>(0, Unknown::OFFSET + 1 + k).into(),
+        };
+        alone.solved() - rigid_parts[k]
+    })
 }
 
 /// What the facets of the other part leave of a distance.

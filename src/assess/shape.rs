@@ -5,7 +5,7 @@ mod local;
 
 use serde::{Deserialize, Serialize};
 
-use super::borders::{Borders, LEAST_PAIRED, PairKind};
+use super::borders::{Borders, HolePair, LEAST_PAIRED, PairKind};
 use super::contact::{Contacts, STATED_SHARE};
 use super::evidence::PoseEvidence;
 use super::fit::{Fit, HoleLeft};
@@ -397,10 +397,17 @@ fn misplaced_hole(
     left: &[HoleLeft],
     tolerance: &ShapeTolerance,
 ) -> Option<ShapeReason> {
+    // The nodes of round holes tell how well each of them is known, however ragged the outlines are.
+    let ragged = borders.limit(tolerance);
+    let limit_of = |pair: &HolePair| {
+        let round = |by: f64| tolerance.remainder.hypot(by);
+        pair.out_of_round.map_or(ragged, |by| round(by).min(ragged))
+    };
     let holes = borders.all_holes().zip(left);
-    let worst = holes.max_by(|a, b| a.1.size().total_cmp(&b.1.size()));
-    let (pair, of_worst) = worst?;
-    let of_each = (of_worst.size(), borders.limit(tolerance));
+    let holes = holes.map(|(pair, left)| (pair, left.size(), limit_of(pair)));
+    let worst = holes.max_by(|a, b| (a.1 / a.2).total_cmp(&(b.1 / b.2)));
+    let (pair, by, limit) = worst?;
+    let of_each = (by, limit);
     let of_all = mean_off(left).map(|mean| (mean.off, mean.limit(tolerance)));
     let is_beyond = |(by, limit): &(f64, f64)| by > limit;
     let [of_each, of_all] = [Some(of_each), of_all].map(|of| of.filter(is_beyond));

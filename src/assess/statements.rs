@@ -2,7 +2,7 @@
 
 use super::borders::{BorderComparison, HOLES_THAT_HOLD};
 use super::contact::{ContactSearch, MAX_NODES};
-use super::decide::NEAR_MIRROR;
+use super::decide::{LEAST_TOGETHER, NEAR_MIRROR};
 use super::evidence::{EvidenceSearch, PoseEvidence};
 use super::fit::Fit;
 use super::free_motion::FreeMotion;
@@ -46,19 +46,20 @@ pub(super) fn statements(
     settings: &AssessSettings,
 ) -> Statements {
     let compared = Compared::under(pair, pose, settings, Outlines::Compared);
-    let met = compared.met.as_ref();
     let mut shape = compared.shape(settings);
-    if let Some(met) = met
+    if let Some(met) = &compared.met
         && shape.met < OVERHANGS
     {
         shape
             .overhang
             .get_or_insert_with(|| met.evidence.overhang());
     }
+    let held_across = motion.and_then(|motion| compared.held_across(pose, motion));
+    let (met, tolerance) = (compared.met, compared.tolerance);
     Statements {
-        uncertainty: met.and_then(|met| met.uncertainty(settings, &compared.tolerance)),
+        uncertainty: met.and_then(|met| met.uncertainty(settings, &tolerance)),
         shape,
-        held_across: motion.and_then(|motion| compared.held_across(pose, motion)),
+        held_across,
     }
 }
 
@@ -146,16 +147,28 @@ impl<'a> Compared<'a> {
 
 impl<'a> Met<'a> {
     fn uncertainty(
-        &self,
+        mut self,
         settings: &AssessSettings,
         tolerance: &ShapeTolerance,
     ) -> Option<PoseUncertainty> {
+        if self.hardly_lie_together(tolerance) {
+            self.evidence.borders = self.evidence.borders.of_holes();
+            self.fit = Fit::of(&self.evidence);
+        }
         let other_trims = if self.is_held_by_trims(tolerance) {
             tolerance.remainder
         } else {
             0.0
         };
         PoseUncertainty::of(&self.evidence, &self.fit, settings.thickness, other_trims)
+    }
+
+    /// Whether so few of the borders lie together that the outlines among them may do so by chance, as one end does on a
+    /// part with an addendum all round, and no holes hold the part.
+    fn hardly_lie_together(&self, tolerance: &ShapeTolerance) -> bool {
+        let borders = &self.evidence.borders;
+        let together = borders.share_within(&self.fit.borders, TOGETHER * borders.limit(tolerance));
+        borders.holes.len() < HOLES_THAT_HOLD && together < LEAST_TOGETHER
     }
 
     /// Whether outlines and no holes hold the part while some of them lie apart: the others may have been trimmed

@@ -28,6 +28,10 @@ const OFFSET_LEAVES: f64 = 0.25;
 /// brought the errors beyond three times the statement from five to three; twice as much mended no other.
 const BEND_SHARE: f64 = 0.3;
 
+/// Where a bend is much like a motion of the part, such as a slide of a smooth roof along itself, the pose takes most of
+/// it up, and only the other bends are seen. It may be so many times as large as they are.
+const UNSEEN_BEND: f64 = 0.7;
+
 /// Bends that are so many times what remains are bends.
 const CLEARLY_BENT: f64 = 2.0;
 
@@ -76,7 +80,8 @@ pub enum PartDirection {
 /// The uncertainty of a pose: a delete-group jackknife over 16 patches of the smaller part (Shao and Tu 1995). Each
 /// patch in turn is left out, the pose that fits the others is found, and the spread of these poses is the uncertainty.
 /// Springback, which is alike over a whole patch, counts in full, while the covariance of millions of single points
-/// would neglect it. It is no measure of a wholly different pose that fits as well, which the search for rivals is for.
+/// would neglect it. What a bend would do to the pose that is much like a motion of the part, and outlines that lie
+/// together by chance, no patch shows; both are counted beside it. It is no measure of a wholly different pose that fits as well, which the search for rivals is for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PoseUncertainty {
     /// Largest uncertainty of any source node, in target length units.
@@ -118,7 +123,8 @@ impl PoseUncertainty {
         let [bend, left] =
             [&fit.smooth, &fit.left].map(|values| contacts.at_share(values, STATED_SHARE));
         // Where about as much remains as is bent, the bends stand for something else.
-        let unbent = Some(fit.rigid).filter(|_| bend > CLEARLY_BENT * left);
+        let is_bent = bend > CLEARLY_BENT * left;
+        let unbent = is_bent.then_some(fit.rigid);
         let Replicates {
             mut motions,
             offset_as_motion,
@@ -129,6 +135,9 @@ impl PoseUncertainty {
         }
         let unknown_offset = offset_as_motion.and(thickness).map_or(0.0, |t| 0.5 * t);
         motions.extend(offset_as_motion.map(|motion| motion * unknown_offset));
+        if is_bent {
+            motions.extend(fit.pulled_by.map(|motion| motion * (UNSEEN_BEND * bend)));
+        }
         let motions: Vec<SmallMotion> = motions
             .iter()
             .map(|six| SmallMotion::of(six, contacts))

@@ -7,6 +7,8 @@ const INWARD: f64 = 0.3;
 /// A hole is round if its vertices lie within this share of the radius of one circle. Three always do.
 const ROUND: f64 = 0.1;
 const LEAST_ROUND: usize = 4;
+/// Fewer vertices lie on a circle so closely by chance that they do not tell how round the hole is.
+const LEAST_KNOWN: usize = 8;
 /// Vertices lie around the centre of their circle if the middle of their edges is at most this share of the radius away.
 const AROUND: f64 = 0.6;
 
@@ -23,10 +25,29 @@ pub struct Border {
     /// Of a round hole the centre of the circle through its vertices, which does not depend on how they are spread over
     /// it; else the middle of the edges, by length.
     pub center: Point3,
-    /// Radius of that circle.
-    pub circle_radius: Option<f64>,
+    /// That circle.
+    pub circle: Option<Circle>,
     /// Whether it is closed and the sheet lies around it. Other borders are outlines.
     pub is_hole: bool,
+}
+
+/// The circle through the vertices of a round hole.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Circle {
+    /// Its radius.
+    pub radius: f64,
+    /// How far the vertices lie off it at most; `None` where they are too few to tell.
+    pub deviation: Option<f64>,
+}
+
+impl Circle {
+    /// The same in a frame of another length unit.
+    pub fn scaled(self, scale: f64) -> Self {
+        Self {
+            radius: self.radius * scale,
+            deviation: self.deviation.map(|deviation| deviation * scale),
+        }
+    }
 }
 
 impl Border {
@@ -67,7 +88,7 @@ impl Border {
         let circle = is_hole.then(|| circle(&vertices, mesh, &center)).flatten();
         Self {
             center: circle.map_or(center, |(center, _)| center),
-            circle_radius: circle.map(|(_, radius)| radius),
+            circle: circle.map(|(_, circle)| circle),
             is_hole,
             vertices,
             closed,
@@ -76,9 +97,9 @@ impl Border {
     }
 }
 
-/// Centre and radius of the circle through the vertices of a hole about `middle`, by least squares of the squared
+/// Centre of the circle, and the circle, through the vertices of a hole about `middle`, by least squares of the squared
 /// distances (Kåsa 1976); `None` unless it is round. Across the sheet it lies where the middle does.
-fn circle(vertices: &[u32], mesh: &TriMesh, middle: &Point3) -> Option<(Point3, f64)> {
+fn circle(vertices: &[u32], mesh: &TriMesh, middle: &Point3) -> Option<(Point3, Circle)> {
     if vertices.len() < LEAST_ROUND {
         return None;
     }
@@ -100,10 +121,19 @@ fn circle(vertices: &[u32], mesh: &TriMesh, middle: &Point3) -> Option<(Point3, 
     }
     let [x, y, rest] = left.lu().solve(&right)?.into();
     let radius = (rest + x * x + y * y).sqrt();
-    let is_round = |[a, b]: [f64; 2]| ((a - x).hypot(b - y) - radius).abs() <= ROUND * radius;
+    let off = arms.map(|[a, b]| ((a - x).hypot(b - y) - radius).abs());
+    let deviation = off.fold(0.0, f64::max);
     let is_around = x.hypot(y) <= AROUND * radius;
-    let is_circle = is_around && arms.into_iter().all(is_round);
-    is_circle.then(|| (middle + first * x + second * y, radius))
+    let is_circle = is_around && deviation <= ROUND * radius;
+    let circle = Circle {
+        radius,
+        deviation: (vertices.len() >= LEAST_KNOWN).then(|| {
+            // The three unknowns of the circle take up some of it.
+            let n = vertices.len() as f64;
+            deviation * n / (n - 3.0)
+        }),
+    };
+    is_circle.then(|| (middle + first * x + second * y, circle))
 }
 
 fn segments<'a>(

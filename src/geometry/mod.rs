@@ -22,7 +22,7 @@ mod z_order;
 
 pub use aabb::Aabb;
 pub use border_edges::{BorderEdge, BorderEdges, BorderLoop};
-pub use borders::Border;
+pub use borders::{Border, Circle};
 pub use camera::{Camera, Projection};
 pub use clean::CleanMesh;
 pub use landmarks::{Hole, Landmarks};

@@ -56,6 +56,8 @@ mod project;
 mod realistic;
 mod registration;
 mod robustness;
+mod roof_panels;
+mod round_holes;
 mod samples;
 mod search;
 mod simplify;

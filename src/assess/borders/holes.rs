@@ -2,7 +2,7 @@
 
 use super::PARALLEL;
 use crate::assess::border_curve::BorderCurve;
-use crate::geometry::{Aabb, Point3, Similarity, Vector3};
+use crate::geometry::{Aabb, Circle, Point3, Similarity, Vector3};
 use crate::registration::Surface;
 use crate::search::ClosestPoint;
 
@@ -25,8 +25,8 @@ pub(crate) struct Hole {
     pub(in crate::assess) center: Point3,
     /// Mean distance of its border from the centre.
     pub(in crate::assess) radius: f64,
-    /// Radius of the circle that a round one is.
-    pub(super) circle_radius: Option<f64>,
+    /// The circle that a round one is.
+    pub(super) circle: Option<Circle>,
     /// Of its border.
     pub(super) length: f64,
     /// Of the sheet around it.
@@ -42,14 +42,16 @@ pub(crate) struct HolePair {
     pub(crate) off: Vector3,
     /// Difference of the radii.
     pub(in crate::assess) wider: f64,
+    /// How far the nodes of both lie off their circles; `None` unless both are round and have enough of them.
+    pub(in crate::assess) out_of_round: Option<f64>,
 }
 
 impl Hole {
     /// How much its radius is larger than another's. Chords of the few edges of a coarse mesh make a round hole smaller,
     /// not its circle; a square with a node at each corner only has a circle too.
     fn wider_than(&self, other: &Self) -> f64 {
-        match (self.circle_radius, other.circle_radius) {
-            (Some(own), Some(others)) => own - others,
+        match (self.circle, other.circle) {
+            (Some(own), Some(others)) => own.radius - others.radius,
             _ => self.radius - other.radius,
         }
     }
@@ -63,10 +65,14 @@ impl Hole {
 
 impl HolePair {
     pub(super) fn of(of_source: &Hole, of_target: &Hole) -> Self {
+        let deviation = |hole: &Hole| hole.circle?.deviation;
         Self {
             hole: *of_target,
             off: of_source.center - of_target.center,
             wider: of_source.wider_than(of_target).abs(),
+            out_of_round: deviation(of_source)
+                .zip(deviation(of_target))
+                .map(|(a, b)| a + b),
         }
     }
 }
@@ -157,9 +163,9 @@ pub(super) fn hole(border: &BorderCurve, target_from_border: &Similarity) -> Hol
     Hole {
         center: target_from_border.apply(&border.center),
         radius: border.radius() * target_from_border.scale,
-        circle_radius: border
-            .circle_radius
-            .map(|radius| radius * target_from_border.scale),
+        circle: border
+            .circle
+            .map(|circle| circle.scaled(target_from_border.scale)),
         length: border.length * target_from_border.scale,
         normal: target_from_border.rotate(&normal),
     }

@@ -78,7 +78,7 @@ fn a_hole_keeps_the_one_that_it_lies_on_whichever_comes_first() {
     let at = |x: f64| Hole {
         center: Point3::new(x, 0.0, 0.0),
         radius: 5.0,
-        circle_radius: None,
+        circle: None,
         length: 31.0,
         normal: Vector3::z(),
     };
@@ -99,7 +99,7 @@ fn holes_that_overlap_are_moved_or_resized_but_no_pilot_hole_is() {
     let hole = |x: f64, radius: f64| Hole {
         center: Point3::new(x, 0.0, 0.0),
         radius,
-        circle_radius: None,
+        circle: None,
         length: 0.0,
         normal: Vector3::z(),
     };
@@ -200,11 +200,15 @@ fn a_round_hole_is_the_same_however_its_vertices_are_spread() {
         .map(|k| f64::from(k) * 15.0_f64.to_radians())
         .collect();
     let (fine, coarse) = (plate(&even), plate(&[0.0, 0.8, 1.9, 4.0]));
+    let known = compared(&fine, &fine).holes[0].out_of_round;
+    assert!(known.is_some_and(|by| by < 1e-9), "{known:?}");
     for pair in [[&fine, &coarse], [&coarse, &fine]] {
         let borders = compared(pair[0], pair[1]);
         let [hole] = &borders.holes[..] else {
             panic!("{} holes", borders.holes.len());
         };
         assert!(hole.off.norm() < 1e-9 && hole.wider < 1e-9, "{hole:?}");
+        // Four nodes always lie close to some circle.
+        assert_eq!(hole.out_of_round, None);
     }
 }
