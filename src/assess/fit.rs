@@ -3,6 +3,8 @@
 mod bends;
 mod unknowns;
 
+use nalgebra::{SMatrix, SVector};
+
 use super::borders::PairKind;
 use super::contact::{Contact, Contacts};
 use super::evidence::PoseEvidence;
@@ -20,6 +22,9 @@ const ROUNDS: usize = 4;
 /// Share of an offset that nothing else can imitate; with less it is not separable.
 pub(super) const LEAST_OWN: f64 = 0.02;
 
+/// Bends imitate a motion if less than this share of it lies outside of what they do.
+const IMITATED: f64 = 0.1;
+
 /// The gaps taken apart.
 pub(crate) struct Fit {
     /// Of each place, what rigid motion and bends explain.
@@ -33,7 +38,7 @@ pub(crate) struct Fit {
     /// lengths at the contacts' radius.
     pub(super) rigid: Six,
     /// How far each of the bends, of size 1 at the border, moves the source from where it belongs if the pose is found as
-    /// if there were no bends.
+    /// if there were no bends; none where that motion can be told from bends.
     pub(super) pulled_by: [Six; N_BENDS],
     pub(super) offset: f64,
     pub(super) is_separable: bool,
@@ -198,18 +203,36 @@ impl Fit {
     }
 }
 
-/// What a pose without bends makes of each of the bends beyond the rigid motion that is in it.
+/// What a pose without bends makes of each of the bends beyond the rigid motion that is in it, where bends imitate that:
+/// other motions are told from bends where both are solved for.
 fn pulled_by(
     equations: &NormalEquations<N_SMOOTH>,
     rigid_parts: &[Six; N_BENDS],
 ) -> [Six; N_BENDS] {
+    const BENDS: usize = Unknown::OFFSET + 1;
     let matrix = &equations.matrix;
+    let of_motion: SMatrix<f64, 6, 6> = matrix.fixed_view::<6, 6>(0, 0).into();
+    let mixed = matrix.fixed_view::<6, N_BENDS>(0, BENDS);
+    let own_share = |motion: &Six| {
+        let whole = motion.dot(&(of_motion * motion));
+        let right: SVector<f64, N_BENDS> = mixed.transpose() * motion;
+        let bends = NormalEquations::<N_BENDS> {
+            matrix: matrix.fixed_view::<N_BENDS, N_BENDS>(BENDS, BENDS).into(),
+            right,
+        };
+        1.0 - right.dot(&bends.solved()) / whole.max(f64::MIN_POSITIVE)
+    };
     std::array::from_fn(|k| {
         let alone = NormalEquations::<6> {
-            matrix: matrix.fixed_view::<6, 6>(0, 0).into(),
-            right: matrix.fixed_view::<6, 1>(0, Unknown::OFFSET + 1 + k).into(),
+            matrix: of_motion,
+            right: mixed.column(k).into(),
         };
-        alone.solved() - rigid_parts[k]
+        let found = alone.solved();
+        if own_share(&found) < IMITATED {
+            found - rigid_parts[k]
+        } else {
+            Six::zeros()
+        }
     })
 }
 
