@@ -413,6 +413,7 @@ impl Borders {
                 let holes = borders.iter().filter(|border| border.is_hole);
                 holes.map(|border| hole(border, pose)).collect::<Vec<_>>()
             });
+        let all_of_source = of_source.clone();
         let partners = partners(&of_source, &of_target, near);
         let mut is_used = vec![false; of_target.len()];
         let mut alone = Vec::new();
@@ -430,8 +431,8 @@ impl Borders {
         let left: Vec<Hole> = left.map(|(hole, _)| *hole).collect();
         let (source, target) = ((surfaces[0], &back), (surfaces[1], &still));
         let [(of_source, mut open_in_target), (of_target, open_in_source)] = [
-            solid_at(alone, source, target, near),
-            solid_at(left, target, source, near),
+            solid_at(alone, source, target, near, &of_target),
+            solid_at(left, target, source, near, &all_of_source),
         ];
         self.missing = [of_source, of_target];
         // Where neither part is solid at the middle of the other's hole, the holes lie in each other.

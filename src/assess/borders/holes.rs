@@ -128,13 +128,17 @@ pub(super) fn overlaps(hole: &Hole, other: &Hole) -> bool {
 
 /// The holes of a part at whose middle the other one is solid, and the rest. Each part comes with the motion to its
 /// frame from that of the holes. Holes of a layer that lies behind another one of their own part, as where parts of an
-/// assembly are joined, say nothing of what lies on that and are left out.
+/// assembly are joined, say nothing of what lies on that and are left out. So are holes no larger than the elements of
+/// the other part where that has none as small as they are, `others` being all of its holes: its mesh leaves them out.
 pub(super) fn solid_at(
     mut holes: Vec<Hole>,
     (own, own_from_holes): (&Surface, &Similarity),
     (other, other_from_holes): (&Surface, &Similarity),
     near: f64,
+    others: &[Hole],
 ) -> (Vec<Hole>, Vec<Hole>) {
+    let smallest = others.iter().map(|hole| hole.radius);
+    let smallest = smallest.fold(f64::INFINITY, f64::min);
     let solid_place = |hole: &Hole| {
         let at = other_from_holes.apply(&hole.center);
         let reach = (FLOATING * hole.radius + near) * other_from_holes.scale;
@@ -143,16 +147,25 @@ pub(super) fn solid_at(
             .rotate(&hole.normal)
             .dot(&other.normal_at(&hit));
         let is_solid = !other.is_on_border(&hit) && facing.abs() > PARALLEL;
-        is_solid.then(|| other_from_holes.inverse().apply(&hit.point))
+        is_solid.then(|| (other_from_holes.inverse().apply(&hit.point), hit.triangle))
+    };
+    let is_too_small = |hole: &Hole| {
+        let has_none_as_small = smallest > SAME_RADIUS * hole.radius;
+        let is_no_larger = |(_, triangle): (Point3, u32)| {
+            // Half of a square element.
+            let element = (2.0 * other.mesh().area_vector(triangle as usize).norm()).sqrt();
+            hole.radius * other_from_holes.scale < element
+        };
+        has_none_as_small && solid_place(hole).is_some_and(is_no_larger)
     };
     let is_behind = |hole: &Hole| {
-        solid_place(hole).is_some_and(|place| {
+        solid_place(hole).is_some_and(|(place, _)| {
             let reach = BEHIND * (place - hole.center).norm() * own_from_holes.scale;
             let at = own_from_holes.apply(&place);
             own.bvh().closest(&at, reach, None, None).is_some()
         })
     };
-    holes.retain(|hole| !is_behind(hole));
+    holes.retain(|hole| !is_behind(hole) && !is_too_small(hole));
     holes
         .into_iter()
         .partition(|hole| solid_place(hole).is_some())

@@ -212,3 +212,44 @@ fn a_round_hole_is_the_same_however_its_vertices_are_spread() {
         assert_eq!(hole.out_of_round, None);
     }
 }
+
+/// A rectangle of 30 by 20 mm in elements of this size.
+fn without_hole(element: f64) -> Surface {
+    let (n, m) = ((30.0 / element) as u32, (20.0 / element) as u32);
+    let points = (0..(n + 1) * (m + 1)).map(|k| {
+        let [x, y] = [k % (n + 1), k / (n + 1)].map(|k| element * f64::from(k));
+        Point3::new(x, y, 0.0)
+    });
+    let cells = (0..n * m).map(|k| k / n * (n + 1) + k % n);
+    let triangles = cells.flat_map(|a| [[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]]);
+    let mesh = TriMesh::new(points.collect(), triangles.collect()).unwrap();
+    Surface::new(&mesh, "solid").unwrap()
+}
+
+#[test]
+fn a_hole_that_the_elements_of_the_other_part_cannot_show_is_not_missing() {
+    // Its radius is 2.3 mm.
+    let pierced = sheet(30, 5);
+    for (element, n_missing) in [(1.0, 1), (2.0, 1), (5.0, 0)] {
+        let solid = without_hole(element);
+        assert_eq!(compared(&pierced, &solid).missing[0].len(), n_missing);
+        assert_eq!(compared(&solid, &pierced).missing[1].len(), n_missing);
+    }
+    // A part that has a hole as small as that could have shown it.
+    let coarse = without_hole(5.0);
+    let curves = curves_of(&pierced);
+    let curve = curves.iter().find(|border| border.is_hole).unwrap();
+    let still = Similarity::identity();
+    let hole = hole(curve, &still);
+    let at = |others: &[Hole]| {
+        solid_at(
+            vec![hole],
+            (&pierced, &still),
+            (&coarse, &still),
+            3.0,
+            others,
+        )
+    };
+    assert_eq!(at(&[]).0.len(), 0);
+    assert_eq!(at(&[hole]).0.len(), 1);
+}
