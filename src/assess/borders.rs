@@ -12,7 +12,7 @@ use super::tolerance::{ShapeTolerance, coarser_edge, is_source_smaller};
 use crate::geometry::{Point3, Similarity, Vector3};
 use crate::registration::Surface;
 use crate::search::PointTree;
-use holes::{hole, overlaps, partners, solid_at};
+use holes::{hole, overlaps, partners, smallest_radius, solid_at};
 
 /// Holes in common that hold a part whose surface can slide.
 pub(crate) const HOLES_THAT_HOLD: usize = 2;
@@ -413,7 +413,7 @@ impl Borders {
                 let holes = borders.iter().filter(|border| border.is_hole);
                 holes.map(|border| hole(border, pose)).collect::<Vec<_>>()
             });
-        let all_of_source = of_source.clone();
+        let [in_source, in_target] = [&of_source, &of_target].map(|holes| smallest_radius(holes));
         let partners = partners(&of_source, &of_target, near);
         let mut is_used = vec![false; of_target.len()];
         let mut alone = Vec::new();
@@ -431,8 +431,8 @@ impl Borders {
         let left: Vec<Hole> = left.map(|(hole, _)| *hole).collect();
         let (source, target) = ((surfaces[0], &back), (surfaces[1], &still));
         let [(of_source, mut open_in_target), (of_target, open_in_source)] = [
-            solid_at(alone, source, target, near, &of_target),
-            solid_at(left, target, source, near, &all_of_source),
+            solid_at(alone, source, target, near, in_target),
+            solid_at(left, target, source, near, in_source),
         ];
         self.missing = [of_source, of_target];
         // Where neither part is solid at the middle of the other's hole, the holes lie in each other.

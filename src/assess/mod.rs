@@ -46,7 +46,7 @@ pub use tolerance::{AssessSettings, ShapeTolerance};
 pub use trims::BorderApart;
 pub use uncertainty::{PartDirection, PoseUncertainty};
 pub use verdict::Verdict;
-pub use words::{as_well, beside, fit_beside, fit_of_hand, likely_beside};
+pub use words::{alternative_words, as_well, beside, fit_beside, fit_of_hand, likely_beside};
 
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};

@@ -163,11 +163,17 @@ impl<'a> Met<'a> {
         PoseUncertainty::of(&self.evidence, &self.fit, settings.thickness, other_trims)
     }
 
+    /// Share of the smaller part's borders that lies together.
+    fn share_together(&self, tolerance: &ShapeTolerance) -> f64 {
+        let borders = &self.evidence.borders;
+        borders.share_within(&self.fit.borders, TOGETHER * borders.limit(tolerance))
+    }
+
     /// Whether so few of the borders lie together that the outlines among them may do so by chance, as one end does on a
     /// part with an addendum all round, and no holes hold the part.
     fn hardly_lie_together(&self, tolerance: &ShapeTolerance) -> bool {
         let borders = &self.evidence.borders;
-        let together = borders.share_within(&self.fit.borders, TOGETHER * borders.limit(tolerance));
+        let together = self.share_together(tolerance);
         borders.holes.len() < HOLES_THAT_HOLD && together < LEAST_TOGETHER
     }
 
@@ -175,7 +181,7 @@ impl<'a> Met<'a> {
     /// elsewhere too.
     fn is_held_by_trims(&self, tolerance: &ShapeTolerance) -> bool {
         let borders = &self.evidence.borders;
-        let together = borders.share_within(&self.fit.borders, TOGETHER * borders.limit(tolerance));
+        let together = self.share_together(tolerance);
         let lie_apart = self.other_trim.is_some() || together < ALL_TOGETHER * borders.share();
         borders.holes.len() < HOLES_THAT_HOLD && lie_apart
     }

@@ -14,7 +14,7 @@ use crate::text::{Lengths, counted, fixed, parts_by_id, percent, vector};
 
 mod ratio;
 
-pub use ratio::{as_well, beside, fit_beside, fit_of_hand, likely_beside};
+pub use ratio::{alternative_words, as_well, beside, fit_beside, fit_of_hand, likely_beside};
 
 /// Rotations smaller than this are not mentioned.
 const NO_ROTATION: f64 = 3.0 * PI / 180.0;

@@ -97,7 +97,7 @@ fn a_smooth_panel_that_comes_apart_where_it_is_moved_does_not_slide() {
 }
 
 /// The usual match of two full meshes.
-fn matched(source: &Surface, target: &Surface) -> MatchOutcome {
+pub fn matched(source: &Surface, target: &Surface) -> MatchOutcome {
     let input = MatchInput {
         source,
         target,
@@ -106,7 +106,8 @@ fn matched(source: &Surface, target: &Surface) -> MatchOutcome {
     match_surfaces(&input, &MatchSettings::default(), &Monitor::silent()).unwrap()
 }
 
-fn judge(source: &TriMesh, target: &TriMesh) -> (MatchOutcome, Assessment) {
+/// A match of two meshes, and its assessment.
+pub fn judge(source: &TriMesh, target: &TriMesh) -> (MatchOutcome, Assessment) {
     let surfaces = [source, target].map(|mesh| Surface::new(mesh, "source").unwrap());
     let monitor = Monitor::silent();
     let outcome = matched(&surfaces[0], &surfaces[1]);

@@ -6,6 +6,7 @@ use shapematch::monitor::Monitor;
 use shapematch::registration::*;
 use shapematch::settling::settle;
 
+use super::assess::matched;
 use super::drawn_pan::{placement, worst_node};
 
 /// A roof of 1,400 by 1,000 mm with an addendum all round and bends of so many millimetres.
@@ -35,12 +36,7 @@ fn a_roof_whose_end_lies_on_the_other_by_chance_is_not_surely_placed() {
     for bend in [-0.7, 0.7] {
         let stamped = roof([110, 80], 17.0, bend).transformed(&truth.inverse());
         let source = Surface::new(&stamped, "source").unwrap();
-        let input = MatchInput {
-            source: &source,
-            target: &target,
-            reduced: None,
-        };
-        let mut outcome = match_surfaces(&input, &settings, &silent).unwrap();
+        let mut outcome = matched(&source, &target);
         settle(&mut outcome, [&source, &target], &settings, &check, &silent).unwrap();
         let assessed = assess(&source, &target, &outcome, &check, &silent).unwrap();
         let error = worst_node(&stamped, &truth, &outcome.target_from_source);

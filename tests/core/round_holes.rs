@@ -4,9 +4,8 @@ use std::collections::HashMap;
 
 use shapematch::assess::*;
 use shapematch::geometry::{Point3, TriMesh, Vector3};
-use shapematch::monitor::Monitor;
-use shapematch::registration::*;
 
+use super::assess::judge;
 use super::drawn_pan::{pan, placement};
 
 /// Middle of the hole.
@@ -39,18 +38,8 @@ fn pierced(pitch: f64, turn: f64, radius: f64) -> TriMesh {
 }
 
 fn judged(stamped: &TriMesh, crash: &TriMesh) -> Assessment {
-    let truth = placement(9);
-    let stamped = stamped.transformed(&truth.inverse());
-    let [source, target] = [&stamped, crash].map(|mesh| Surface::new(mesh, "source").unwrap());
-    let input = MatchInput {
-        source: &source,
-        target: &target,
-        reduced: None,
-    };
-    let silent = Monitor::silent();
-    let outcome = match_surfaces(&input, &MatchSettings::default(), &silent).unwrap();
-    let check = AssessSettings::default();
-    assess(&source, &target, &outcome, &check, &silent).unwrap()
+    let stamped = stamped.transformed(&placement(9).inverse());
+    judge(&stamped, crash).1
 }
 
 #[test]

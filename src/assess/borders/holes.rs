@@ -129,16 +129,14 @@ pub(super) fn overlaps(hole: &Hole, other: &Hole) -> bool {
 /// The holes of a part at whose middle the other one is solid, and the rest. Each part comes with the motion to its
 /// frame from that of the holes. Holes of a layer that lies behind another one of their own part, as where parts of an
 /// assembly are joined, say nothing of what lies on that and are left out. So are holes no larger than the elements of
-/// the other part where that has none as small as they are, `others` being all of its holes: its mesh leaves them out.
+/// the other part where that has none as small as they are, `smallest` being the radius of its smallest hole: its mesh leaves them out.
 pub(super) fn solid_at(
     mut holes: Vec<Hole>,
     (own, own_from_holes): (&Surface, &Similarity),
     (other, other_from_holes): (&Surface, &Similarity),
     near: f64,
-    others: &[Hole],
+    smallest: f64,
 ) -> (Vec<Hole>, Vec<Hole>) {
-    let smallest = others.iter().map(|hole| hole.radius);
-    let smallest = smallest.fold(f64::INFINITY, f64::min);
     let solid_place = |hole: &Hole| {
         let at = other_from_holes.apply(&hole.center);
         let reach = (FLOATING * hole.radius + near) * other_from_holes.scale;
@@ -169,6 +167,12 @@ pub(super) fn solid_at(
     holes
         .into_iter()
         .partition(|hole| solid_place(hole).is_some())
+}
+
+/// Radius of the smallest hole, infinite of none.
+pub(super) fn smallest_radius(holes: &[Hole]) -> f64 {
+    let radii = holes.iter().map(|hole| hole.radius);
+    radii.fold(f64::INFINITY, f64::min)
 }
 
 pub(super) fn hole(border: &BorderCurve, target_from_border: &Similarity) -> Hole {

@@ -1,5 +1,7 @@
 //! Ratios of two poses in words.
 
+use crate::text::whole_percent;
+
 /// How another pose fits beside the best, by its error, or by what its shape says of it: "error 8 % higher",
 /// "less likely by its shape".
 pub fn fit_beside(score_ratio: f64, by_shape: bool) -> String {
@@ -12,10 +14,19 @@ pub fn fit_beside(score_ratio: f64, by_shape: bool) -> String {
 
 /// How likely another pose is beside the best, where the shapes say so: "as likely".
 pub fn likely_beside(score_ratio: f64) -> &'static str {
-    match score_ratio {
-        ratio if is_equal(ratio) => "as likely",
-        ratio if ratio < 1.0 => "more likely",
-        _ => "less likely",
+    by_ratio(score_ratio, ["more likely", "as likely", "less likely"])
+}
+
+/// How an alternative that is shown fits beside the best pose, as a sentence.
+pub fn alternative_words(score_ratio: f64, by_shape: bool) -> String {
+    let worse = whole_percent(score_ratio - 1.0);
+    if worse == whole_percent(0.0) {
+        "An alternative: it fits as well as the best pose.".to_owned()
+    } else if by_shape {
+        let likely = likely_beside(score_ratio);
+        format!("An alternative: by its shape it is {likely} than the best pose.")
+    } else {
+        format!("An alternative: its error is {worse} higher than that of the best pose.")
     }
 }
 
@@ -38,16 +49,19 @@ pub fn fit_of_hand(score_ratio: f64, by_borders: bool) -> String {
 
 /// How well another pose fits beside the best: "equally well", "nearly as well".
 pub fn as_well(score_ratio: f64) -> &'static str {
-    match score_ratio {
-        ratio if is_equal(ratio) => "equally well",
-        ratio if ratio < 1.0 => "at least as well",
-        _ => "nearly as well",
-    }
+    by_ratio(
+        score_ratio,
+        ["at least as well", "equally well", "nearly as well"],
+    )
 }
 
-/// Whether the difference rounds to 0 %.
-fn is_equal(score_ratio: f64) -> bool {
-    (score_ratio - 1.0).abs() < 0.005
+/// The words for a pose that is better than the best, equal to it, or worse. The difference of equal ones rounds to 0 %.
+fn by_ratio(score_ratio: f64, [better, equal, worse]: [&'static str; 3]) -> &'static str {
+    match score_ratio {
+        ratio if (ratio - 1.0).abs() < 0.005 => equal,
+        ratio if ratio < 1.0 => better,
+        _ => worse,
+    }
 }
 
 const EQUAL: &str = "equal";

@@ -1,10 +1,10 @@
 //! What the words of an assessment say, and what they leave out.
 
 use super::as_well;
-use super::ratio::{error_beside, fit_beside};
+use super::ratio::{alternative_words, error_beside, fit_beside};
 use crate::assess::{FreeMotion, FreeMotionKind, PoseKind, Reason, Verdict};
 use crate::geometry::{Point3, Vector3};
-use crate::text::Lengths;
+use crate::text::{Lengths, whole_percent};
 
 #[test]
 fn equally_is_said_only_of_what_rounds_to_no_difference() {
@@ -105,4 +105,15 @@ fn a_pose_that_is_one_of_several_is_not_probably_right() {
     assert!(certain.contains("probably right"));
     let ambiguous = check.advice(Some(PoseKind::Ambiguous));
     assert!(ambiguous.contains("one of several"), "{ambiguous}");
+}
+
+#[test]
+fn an_equal_alternative_is_not_called_worse() {
+    let equal = "An alternative: it fits as well as the best pose.";
+    assert_eq!(alternative_words(1.0, false), equal);
+    assert_eq!(alternative_words(1.003, false), equal);
+    assert_eq!(alternative_words(1.0, true), equal);
+    assert!(alternative_words(1.082, false).contains(&format!("{} higher", whole_percent(0.08))));
+    let by_shape = alternative_words(1.5, true);
+    assert!(by_shape.contains("less likely") && !by_shape.contains('%'));
 }

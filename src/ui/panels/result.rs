@@ -7,7 +7,7 @@ use super::part_question::alike_parts_ui;
 use crate::app::{
     Action, AppState, Axis, Command, ExportCommand, MatchCommand, MatchResult, Section,
 };
-use crate::assess::{Ambiguity, Coverage, OneSided, Reason, fit_beside, likely_beside};
+use crate::assess::{Ambiguity, Coverage, OneSided, Reason, alternative_words, likely_beside};
 use crate::jobs::Stamp;
 use crate::registration::{Alternative, group_starts, limits};
 use crate::report::distances::{OVERLAP_HELP, OVERLAP_SPREAD};
@@ -280,7 +280,8 @@ fn alternative_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, alternati
     let lengths = state.lengths();
     let best = &result.run.assessment.coverage;
     let (rms, p95) = (lengths.number(best.rmse()), lengths.of(best.p95()));
-    paragraph(ui, alternative_words(alternative)).on_hover_text(format!(
+    let said = alternative_words(alternative.score_ratio, alternative.by_shape);
+    paragraph(ui, said).on_hover_text(format!(
         "{} at the best pose: {rms} · {p95}",
         OVERLAP_SPREAD.name
     ));
@@ -291,12 +292,6 @@ fn alternative_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, alternati
     for statement in said.iter().flat_map(|said| said.sentences(lengths)) {
         paragraph(ui, sentence(&statement));
     }
-}
-
-/// How well an alternative fits beside the best pose.
-fn alternative_words(alternative: &Alternative) -> String {
-    let fit = fit_beside(alternative.score_ratio, alternative.by_shape);
-    format!("An alternative, beside the best pose: {fit}.")
 }
 
 fn shown_alternative(result: &MatchResult) -> Option<&Alternative> {
