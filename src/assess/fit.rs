@@ -37,12 +37,10 @@ pub(crate) struct Fit {
     /// How far the source lies from where it belongs, bends counted as part of its shape; turns in
     /// lengths at the contacts' radius.
     pub(super) rigid: Six,
-    /// How far each of the bends, of size 1 at the border, moves the source from where it belongs if the pose is found as
-    /// if there were no bends; none where that motion can be told from bends.
-    pub(super) pulled_by: [Six; N_BENDS],
     pub(super) offset: f64,
     pub(super) is_separable: bool,
     bends: Bends,
+    equations: NormalEquations<N_SMOOTH>,
     found: Row,
 }
 
@@ -90,6 +88,38 @@ impl Fit {
     pub(super) fn left_at(&self, place: &Contact, contacts: &Contacts) -> f64 {
         let row = explaining(contacts, &self.bends, &place.point, &place.normal, 1.0);
         beyond_facets(place.gap - row.dot(&self.found), place)
+    }
+
+    /// How far each of the bends, of size 1 at the border, moves the source from where it belongs if the pose is found as
+    /// if there were no bends; none where bends do not imitate that motion, which is told from them then. O(places).
+    pub(super) fn pulled_by(&self, contacts: &Contacts) -> [Six; N_BENDS] {
+        const BENDS: usize = Unknown::OFFSET + 1;
+        let matrix = &self.equations.matrix;
+        let of_motion: SMatrix<f64, 6, 6> = matrix.fixed_view::<6, 6>(0, 0).into();
+        let mixed = matrix.fixed_view::<6, N_BENDS>(0, BENDS);
+        let own_share = |motion: &Six| {
+            let whole = motion.dot(&(of_motion * motion));
+            let right: SVector<f64, N_BENDS> = mixed.transpose() * motion;
+            let bends = NormalEquations::<N_BENDS> {
+                matrix: matrix.fixed_view::<N_BENDS, N_BENDS>(BENDS, BENDS).into(),
+                right,
+            };
+            1.0 - right.dot(&bends.solved()) / whole.max(f64::MIN_POSITIVE)
+        };
+        std::array::from_fn(|k| {
+            let without_bends = NormalEquations::<6> {
+                matrix: of_motion,
+                right: mixed.column(k).into(),
+            };
+            let found = without_bends.solved();
+            if own_share(&found) < IMITATED {
+                let mut size = SVector::<f64, N_BENDS>::zeros();
+                size[k] = 1.0;
+                found - self.bends.rigid_part(&size, contacts)
+            } else {
+                Six::zeros()
+            }
+        })
     }
 
     /// The pose of the evidence that this is the fit of, moved to where the source belongs.
@@ -184,56 +214,19 @@ impl Fit {
                 wider: pair.wider,
             }
         });
-        let rigid_parts = bends.rigid_parts(contacts);
-        let sizes = bends_of(&found);
-        let of_bends = rigid_parts.iter().zip(&sizes);
-        let of_bends: Six = of_bends.map(|(part, size)| part * *size).sum();
         Self {
             smooth: smooth.collect(),
             borders: if explains { beside } else { as_they_are },
             holes: holes.collect(),
-            rigid: motion_of(&found) + of_bends,
-            pulled_by: pulled_by(&equations, &rigid_parts),
+            rigid: motion_of(&found) + bends.rigid_part(&bends_of(&found), contacts),
             left,
             offset,
             is_separable,
             bends,
+            equations,
             found,
         }
     }
-}
-
-/// What a pose without bends makes of each of the bends beyond the rigid motion that is in it, where bends imitate that:
-/// other motions are told from bends where both are solved for.
-fn pulled_by(
-    equations: &NormalEquations<N_SMOOTH>,
-    rigid_parts: &[Six; N_BENDS],
-) -> [Six; N_BENDS] {
-    const BENDS: usize = Unknown::OFFSET + 1;
-    let matrix = &equations.matrix;
-    let of_motion: SMatrix<f64, 6, 6> = matrix.fixed_view::<6, 6>(0, 0).into();
-    let mixed = matrix.fixed_view::<6, N_BENDS>(0, BENDS);
-    let own_share = |motion: &Six| {
-        let whole = motion.dot(&(of_motion * motion));
-        let right: SVector<f64, N_BENDS> = mixed.transpose() * motion;
-        let bends = NormalEquations::<N_BENDS> {
-            matrix: matrix.fixed_view::<N_BENDS, N_BENDS>(BENDS, BENDS).into(),
-            right,
-        };
-        1.0 - right.dot(&bends.solved()) / whole.max(f64::MIN_POSITIVE)
-    };
-    std::array::from_fn(|k| {
-        let alone = NormalEquations::<6> {
-            matrix: of_motion,
-            right: mixed.column(k).into(),
-        };
-        let found = alone.solved();
-        if own_share(&found) < IMITATED {
-            found - rigid_parts[k]
-        } else {
-            Six::zeros()
-        }
-    })
 }
 
 /// What the facets of the other part leave of a distance.

@@ -136,7 +136,10 @@ impl PoseUncertainty {
         let unknown_offset = offset_as_motion.and(thickness).map_or(0.0, |t| 0.5 * t);
         motions.extend(offset_as_motion.map(|motion| motion * unknown_offset));
         if is_bent {
-            motions.extend(fit.pulled_by.map(|motion| motion * (UNSEEN_BEND * bend)));
+            motions.extend(
+                fit.pulled_by(contacts)
+                    .map(|motion| motion * (UNSEEN_BEND * bend)),
+            );
         }
         let motions: Vec<SmallMotion> = motions
             .iter()

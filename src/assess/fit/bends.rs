@@ -45,28 +45,26 @@ impl Bends {
         Self { center, axes, half }
     }
 
-    /// The rigid motion in what each of the bends does, of size 1 at the border, in least squares over the area.
-    pub(super) fn rigid_parts(&self, contacts: &Contacts) -> [Six; N_BENDS] {
-        let mut inertia = Matrix3::zeros();
-        let mut moments = [Vector3::zeros(); N_BENDS];
-        let mut sums = [Vector3::zeros(); N_BENDS];
-        let mut total = 0.0;
+    /// The rigid motion in what bends of these sizes do, in least squares over the area.
+    pub(super) fn rigid_part(&self, sizes: &SVector<f64, N_BENDS>, contacts: &Contacts) -> Six {
+        let (mut inertia, mut moment) = (Matrix3::zeros(), Vector3::zeros());
+        let (mut sum, mut total) = (Vector3::zeros(), 0.0);
         for contact in &contacts.list {
+            let of_each = self.displacements(&contact.point);
+            let along_axes: Vector3 = of_each.iter().zip(sizes).map(|(by, size)| by * *size).sum();
+            let moved = self.axes * along_axes;
             let arm = (contact.point - contacts.center) / contacts.radius;
             let weight = contact.weight;
             inertia += (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * weight;
+            moment += arm.cross(&moved) * weight;
+            sum += moved * weight;
             total += weight;
-            for (k, along_axes) in self.displacements(&contact.point).iter().enumerate() {
-                let moved = self.axes * along_axes;
-                moments[k] += arm.cross(&moved) * weight;
-                sums[k] += moved * weight;
-            }
         }
-        let inverse = inertia.try_inverse().unwrap_or_else(Matrix3::zeros);
-        std::array::from_fn(|k| {
-            let (turn, shift) = (inverse * moments[k], sums[k] / total);
-            Six::from([turn.x, turn.y, turn.z, shift.x, shift.y, shift.z])
-        })
+        let turn = inertia
+            .try_inverse()
+            .map_or(Vector3::zeros(), |i| i * moment);
+        let shift = sum / total;
+        Six::from([turn.x, turn.y, turn.z, shift.x, shift.y, shift.z])
     }
 
     /// How much each of the bends, of size 1 at the border, moves a place along a direction.
