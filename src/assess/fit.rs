@@ -1,6 +1,7 @@
 //! What explains the gaps between two parts: a small motion, an offset of the sheets, and smooth bends.
 
 mod bends;
+mod left_open;
 mod unknowns;
 
 use nalgebra::{SMatrix, SVector};
@@ -106,6 +107,7 @@ impl Fit {
             };
             1.0 - right.dot(&bends.solved()) / whole.max(f64::MIN_POSITIVE)
         };
+        let rigid_parts = self.bends.rigid_parts(contacts);
         std::array::from_fn(|k| {
             let without_bends = NormalEquations::<6> {
                 matrix: of_motion,
@@ -113,9 +115,7 @@ impl Fit {
             };
             let found = without_bends.solved();
             if own_share(&found) < IMITATED {
-                let mut size = SVector::<f64, N_BENDS>::zeros();
-                size[k] = 1.0;
-                found - self.bends.rigid_part(&size, contacts)
+                found - rigid_parts.column(k)
             } else {
                 Six::zeros()
             }
@@ -218,7 +218,7 @@ impl Fit {
             smooth: smooth.collect(),
             borders: if explains { beside } else { as_they_are },
             holes: holes.collect(),
-            rigid: motion_of(&found) + bends.rigid_part(&bends_of(&found), contacts),
+            rigid: motion_of(&found) + bends.rigid_parts(contacts) * bends_of(&found),
             left,
             offset,
             is_separable,

@@ -19,6 +19,7 @@ pub mod deviation;
 pub(crate) mod evidence;
 pub(crate) mod fit;
 pub(crate) mod free_motion;
+mod jackknife;
 pub(crate) mod least_squares;
 mod outline_shift;
 mod pose;

@@ -1,6 +1,6 @@
 //! What springback does to a sheet: smooth bends and a twist that keep lengths, and the camber of a slender part.
 
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 use crate::assess::contact::Contacts;
 use crate::assess::small_motion::Six;
@@ -45,26 +45,28 @@ impl Bends {
         Self { center, axes, half }
     }
 
-    /// The rigid motion in what bends of these sizes do, in least squares over the area.
-    pub(super) fn rigid_part(&self, sizes: &SVector<f64, N_BENDS>, contacts: &Contacts) -> Six {
-        let (mut inertia, mut moment) = (Matrix3::zeros(), Vector3::zeros());
-        let (mut sum, mut total) = (Vector3::zeros(), 0.0);
+    /// The rigid motion in each of the bends, of size 1 at the border, in least squares over the area. O(places).
+    pub(super) fn rigid_parts(&self, contacts: &Contacts) -> SMatrix<f64, 6, N_BENDS> {
+        let (mut inertia, mut total) = (Matrix3::zeros(), 0.0);
+        let (mut moments, mut sums) = ([Vector3::zeros(); N_BENDS], [Vector3::zeros(); N_BENDS]);
         for contact in &contacts.list {
-            let of_each = self.displacements(&contact.point);
-            let along_axes: Vector3 = of_each.iter().zip(sizes).map(|(by, size)| by * *size).sum();
-            let moved = self.axes * along_axes;
             let arm = (contact.point - contacts.center) / contacts.radius;
             let weight = contact.weight;
             inertia += (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * weight;
-            moment += arm.cross(&moved) * weight;
-            sum += moved * weight;
             total += weight;
+            let of_each = self.displacements(&contact.point);
+            for ((by, moment), sum) in of_each.iter().zip(&mut moments).zip(&mut sums) {
+                let moved = self.axes * by * weight;
+                *moment += arm.cross(&moved);
+                *sum += moved;
+            }
         }
-        let turn = inertia
-            .try_inverse()
-            .map_or(Vector3::zeros(), |i| i * moment);
-        let shift = sum / total;
-        Six::from([turn.x, turn.y, turn.z, shift.x, shift.y, shift.z])
+        let inverse = inertia.try_inverse().unwrap_or_else(Matrix3::zeros);
+        let of_each = moments.iter().zip(&sums).map(|(moment, sum)| {
+            let (turn, shift) = (inverse * moment, sum / total);
+            Six::from([turn.x, turn.y, turn.z, shift.x, shift.y, shift.z])
+        });
+        SMatrix::from_columns(&of_each.collect::<Vec<Six>>())
     }
 
     /// How much each of the bends, of size 1 at the border, moves a place along a direction.
