@@ -21,6 +21,8 @@ const MUCH_MORE_MET: f64 = 0.1;
 pub(super) const LEAST_SHARED: f64 = 0.5;
 /// … and where even less does, this share of what meets under that one.
 const NEARLY_SHARED: f64 = 0.8;
+/// A piece of at least this share in which nothing differs is more likely than more of the part that differs.
+const LEAST_PIECE: f64 = 0.35;
 /// Lengths of so many tolerances are differences whatever the facets are and however the part is bent.
 const CLEARLY: f64 = 2.0;
 /// A piece of the smaller part lies much closer to the other part than the whole does under another pose if it lies apart
@@ -30,12 +32,17 @@ const MUCH_CLOSER: f64 = 0.5;
 /// Outlines lie together all round where this share of the smaller part's borders does.
 const ALL_ROUND: f64 = 0.9;
 /// Surfaces that lie apart by at most so many times what facets leave lie on each other.
-const ON_EACH_OTHER: f64 = 2.0;
+pub(super) const ON_EACH_OTHER: f64 = 2.0;
 
 /// Whether a piece of the smaller part that meets the other lies much closer there than the part does that lies `other`
 /// apart.
 pub(super) fn is_much_closer(piece: Meeting, other: f64, noise: f64) -> bool {
     piece.gap + noise <= MUCH_CLOSER * piece.share * piece.share * other
+}
+
+/// How far a piece lies off for its size, as [`is_much_closer`] compares it.
+pub(super) fn off_for_its_size(piece: Meeting) -> f64 {
+    piece.gap / (piece.share * piece.share)
 }
 
 /// Two parts looked at in few places.
@@ -247,20 +254,31 @@ impl Candidate {
     /// which more of the parts meets while the surfaces lie much farther apart: a piece lies on another by chance
     /// hardly ever, while a bend and an offset explain much.
     pub(super) fn lies_much_closer_elsewhere_than(&self, other: &Self, noise: f64) -> bool {
-        let piece = Meeting {
-            share: self.met,
-            gap: self.apart_in_all(),
-        };
         self.only_overhangs
             && (LEAST_SHARED..other.met).contains(&self.met)
             && self.differs_no_more_than(other)
-            && is_much_closer(piece, other.apart_in_all(), noise)
+            && is_much_closer(self.meeting(), other.apart_in_all(), noise)
     }
 
     /// The same where the piece even lies on the other part but for what facets leave.
     pub(super) fn is_exact_partial_fit_beside(&self, other: &Self, noise: f64) -> bool {
         self.apart_in_all() <= ON_EACH_OTHER * noise
             && self.lies_much_closer_elsewhere_than(other, noise)
+    }
+
+    /// Whether a piece of each part lies on the other here and nothing differs but what a bend explains, while each has a
+    /// piece that the other lacks, and more of the parts meets under another pose, under which their shapes differ or
+    /// their surfaces lie much farther apart.
+    pub(super) fn fits_as_a_piece_beside(&self, other: &Self, noise: f64) -> bool {
+        let n_differences = self.n_differences - usize::from(self.hardly_meets);
+        let nothing = (ON_EACH_OTHER * noise).max(UNREMARKABLE * self.limit);
+        self.only_overhangs
+            && (LEAST_PIECE..other.met).contains(&self.met)
+            && n_differences == 0
+            && self.n_alone <= other.n_alone
+            && self.remainder <= nothing
+            && self.apart_in_all() < MUCH_CLOSER * other.apart_in_all()
+            && (other.differs() || is_much_closer(self.meeting(), other.apart_in_all(), noise))
     }
 
     /// Whether the parts meet as a whole, with their outlines together all round, while under another pose each has a
@@ -314,6 +332,14 @@ impl Candidate {
     /// The same with a constant distance of the sheets.
     fn apart_in_all(&self) -> f64 {
         self.apart().hypot(self.offset)
+    }
+
+    /// How the parts meet, bends, remainder and offset taken together.
+    pub(super) fn meeting(&self) -> Meeting {
+        Meeting {
+            share: self.met,
+            gap: self.apart_in_all(),
+        }
     }
 
     /// Whether the shapes surely differ less under this pose: there are fewer differences, or as many while holes

@@ -85,7 +85,7 @@ pub(super) fn mirrored_poses(context: &PairContext<'_>) -> Result<Vec<Similarity
 }
 
 /// What a search finds for the smaller part on the other, as poses of the source.
-fn found_by<'a>(
+pub(super) fn found_by<'a>(
     context: &PairContext<'a>,
     search: impl Fn(&WideSearch<'a>, &Monitor) -> Result<Vec<Similarity>, Cancelled>,
 ) -> Result<Vec<Similarity>, Cancelled> {

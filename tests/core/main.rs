@@ -60,6 +60,7 @@ mod roof_panels;
 mod round_holes;
 mod samples;
 mod search;
+mod shared_pieces;
 mod simplify;
 mod simplify_rules;
 mod skin;

@@ -100,6 +100,50 @@ impl Cloud {
         }
     }
 
+    /// Its points, block by block.
+    pub(super) fn points(&self) -> impl Iterator<Item = Vector3> + '_ {
+        let at = |block: &Block, l: usize| {
+            Vector3::from([0, 1, 2].map(|k| f64::from(block.point[k][l])))
+        };
+        let blocks = self.blocks.iter();
+        blocks.flat_map(move |block| (0..LANES).map(move |l| at(block, l)))
+    }
+
+    /// The cloud of the piece of the surface around a point that has this share of the area.
+    pub(super) fn piece(&self, around: &Vector3, share: f64) -> Self {
+        let points: Vec<Vector3> = self.points().collect();
+        let n = (share * points.len() as f64) as usize;
+        let n = n.next_multiple_of(LANES).min(points.len());
+        let away = |i: usize| (points[i] - around).norm_squared();
+        let mut near: Vec<usize> = (0..points.len()).collect();
+        near.sort_unstable_by(|&a, &b| away(a).total_cmp(&away(b)).then(a.cmp(&b)));
+        near.truncate(n);
+        // In the order of the whole, of which every prefix is spread evenly.
+        near.sort_unstable();
+        let middle = near.iter().map(|&i| points[i]).sum::<Vector3>() / n.max(1) as f64;
+        let (mut low, mut high) = (Vector3::zeros(), Vector3::zeros());
+        let mut blocks = vec![Block::default(); n / LANES];
+        for (place, &i) in near.iter().enumerate() {
+            let local = points[i] - middle;
+            (low, high) = (low.inf(&local), high.sup(&local));
+            let (from, to) = (&self.blocks[i / LANES], &mut blocks[place / LANES]);
+            for k in 0..3 {
+                to.point[k][place % LANES] = local[k] as f32;
+                to.normal[k][place % LANES] = from.normal[k][i % LANES];
+            }
+        }
+        let mut shift = middle / self.scale;
+        if self.is_mirrored {
+            shift.x = -shift.x;
+        }
+        Self {
+            blocks,
+            center: self.center + shift,
+            diagonal: (high - low).norm() as f32,
+            ..*self
+        }
+    }
+
     /// From the data's frame to that of the cloud.
     fn local_from_data(&self) -> Similarity {
         let shift = Similarity::from_translation(-self.center.coords);

@@ -9,6 +9,7 @@
 
 mod cloud;
 mod holes;
+mod pieces;
 mod rounds;
 mod seeds;
 mod step;

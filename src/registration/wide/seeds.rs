@@ -146,12 +146,10 @@ struct Scene {
 
 impl Scene {
     fn new(cloud: &Cloud, grid: &FeatureGrid) -> Self {
-        let at = |v: &[[f32; LANES]; 3], l: usize| local([v[0][l], v[1][l], v[2][l]]);
-        let data: Vec<Sample> = cloud
-            .blocks
-            .iter()
-            .flat_map(|block| (0..LANES).map(move |l| (at(&block.point, l), at(&block.normal, l))))
-            .collect();
+        let normals = cloud.blocks.iter().flat_map(|block| {
+            (0..LANES).map(move |l| local([0, 1, 2].map(|k| block.normal[k][l])))
+        });
+        let data: Vec<Sample> = cloud.points().zip(normals).collect();
         let step = grid.features().len().div_ceil(N_MODEL_SAMPLES);
         let model = grid.features().iter().step_by(step);
         let model = model.map(|f| (local(f.point), local(f.normal))).collect();
@@ -182,22 +180,29 @@ impl Scene {
                 best
             }
         };
-        let mut next = (0..self.model.len()).fold(0, nearest);
-        let mut clearance = vec![f64::INFINITY; self.model.len()];
-        let mut chosen = Vec::new();
-        while chosen.len() < n.clamp(1, self.model.len()) {
-            let point = self.model[next].0;
-            chosen.push(point);
-            next = 0;
-            for (i, (other, _)) in self.model.iter().enumerate() {
-                clearance[i] = clearance[i].min((other - point).norm_squared());
-                if clearance[i] > clearance[next] {
-                    next = i;
-                }
+        let first = (0..self.model.len()).fold(0, nearest);
+        let points: Vec<Vector3> = self.model.iter().map(|(point, _)| *point).collect();
+        far_apart(&points, first, n)
+    }
+}
+
+/// The first of some points and others, each as far from those before as any: `n` of them, at least one.
+pub(super) fn far_apart(points: &[Vector3], first: usize, n: usize) -> Vec<Vector3> {
+    let mut next = first;
+    let mut clearance = vec![f64::INFINITY; points.len()];
+    let mut chosen = Vec::new();
+    while chosen.len() < n.clamp(1, points.len()) {
+        let point = points[next];
+        chosen.push(point);
+        next = 0;
+        for (i, other) in points.iter().enumerate() {
+            clearance[i] = clearance[i].min((other - point).norm_squared());
+            if clearance[i] > clearance[next] {
+                next = i;
             }
         }
-        chosen
     }
+    chosen
 }
 
 /// Centre, mean normal and longest direction of a piece of surface.
