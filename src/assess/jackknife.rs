@@ -93,19 +93,24 @@ pub(super) fn replicates<const N: usize>(
         .map(move |part| ((all - part).solved() - whole) * scale)
 }
 
-/// What noise alone leaves open: the residuals, of this variance, counted as so many independent ones. It is small
-/// beside the replicates except for motions that hardly anything resists, such as the turn of a cup, which a missing
-/// patch does not show. `total` is the weight of the equations; nothing is open by more than `most`.
+/// What noise alone leaves open: the residuals of the places counted as so many independent ones. It is small beside the
+/// replicates except for motions that hardly anything resists, such as the turn of a cup, which a missing patch does
+/// not show. Nothing is open by more than the radius of the places.
 pub(super) fn left_open<const N: usize>(
     equations: &NormalEquations<N>,
-    total: f64,
-    variance: f64,
-    most: f64,
+    evidence: &PoseEvidence<'_>,
+    weights: &[f64],
+    residuals: &[f64],
 ) -> impl Iterator<Item = SVector<f64, N>> + use<N> {
+    let (noise, most) = (evidence.noise, evidence.contacts.radius);
+    let total = weights.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+    let squares = residuals.iter().zip(weights);
+    let squares: f64 = squares.map(|(left, weight)| weight * left * left).sum();
+    let variance = (squares / total).max(noise * noise);
     let matrix = DMatrix::from_iterator(N, N, equations.matrix.iter().copied());
     let eigen = SymmetricEigen::new(matrix);
     (0..N).map(move |k| {
-        let stiffness = eigen.eigenvalues[k].max(0.0) / total.max(f64::MIN_POSITIVE);
+        let stiffness = eigen.eigenvalues[k].max(0.0) / total;
         let open = variance / (INDEPENDENT * stiffness).max(f64::MIN_POSITIVE);
         let direction = eigen.eigenvectors.column(k);
         SVector::from_iterator(direction.iter().copied()) * open.sqrt().min(most)

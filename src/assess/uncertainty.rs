@@ -4,7 +4,7 @@ use nalgebra::{SVector, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
 use super::borders::PairKind;
-use super::contact::{Contact, Contacts, STATED_SHARE};
+use super::contact::{Contacts, STATED_SHARE};
 use super::evidence::PoseEvidence;
 use super::fit::{Fit, LEAST_OWN};
 use super::jackknife::{self, Patches};
@@ -304,9 +304,9 @@ fn replicates(evidence: &PoseEvidence<'_>, patches: &Patches, unbent: Option<Six
     let has_offset = is_separable && offset[Unknown::OFFSET].abs() > FACETING * noise;
     // Squares of the gaps that a solution leaves.
     let squares = squares_of_gaps(evidence, &weights);
-    let left = |by: &NormalEquations<7>, solution: &Seven| squares - by.right.dot(solution);
-    let is_offset =
-        has_offset && left(&with_offset, &offset) < OFFSET_LEAVES * left(&motion_alone, &plain);
+    let left_of = |by: &NormalEquations<7>, solution: &Seven| squares - by.right.dot(solution);
+    let is_offset = has_offset
+        && left_of(&with_offset, &offset) < OFFSET_LEAVES * left_of(&motion_alone, &plain);
     let (whole, all) = if is_offset {
         (offset, with_offset)
     } else {
@@ -327,12 +327,10 @@ fn replicates(evidence: &PoseEvidence<'_>, patches: &Patches, unbent: Option<Six
             .chain(unbent)
             .max_by(|a, b| a.norm().total_cmp(&b.norm())),
     );
-    let total: f64 = weights.iter().sum();
-    let left_of = |c: &Contact| c.gap + row(&c.point, &c.normal, 1.0).dot(&explained);
-    let places = contacts.list.iter().zip(&weights);
-    let squares: f64 = places.map(|(c, weight)| weight * left_of(c).powi(2)).sum();
-    let variance = (squares / total.max(f64::MIN_POSITIVE)).max(noise * noise);
-    let open = jackknife::left_open(&motion_only(&all), total, variance, contacts.radius);
+    let left = contacts.list.iter();
+    let left = left.map(|c| c.gap + row(&c.point, &c.normal, 1.0).dot(&explained));
+    let left: Vec<f64> = left.collect();
+    let open = jackknife::left_open(&motion_only(&all), evidence, &weights, &left);
     motions.extend(open);
     Replicates {
         motions,

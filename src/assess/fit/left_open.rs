@@ -32,12 +32,7 @@ impl Fit {
             }
         }
         let all = jackknife::sum(&parts);
-        let total: f64 = weights.iter().sum();
-        let squares = left.iter().zip(&weights);
-        let squares: f64 = squares.map(|(left, weight)| weight * left * left).sum();
-        let noise = evidence.noise * evidence.noise;
-        let variance = (squares / total.max(f64::MIN_POSITIVE)).max(noise);
-        let open = jackknife::left_open(&all, total, variance, contacts.radius);
+        let open = jackknife::left_open(&all, evidence, &weights, &left);
         let rigid_parts = self.bends.rigid_parts(contacts);
         let rigid = |by: Row| motion_of(&by) + rigid_parts * bends_of(&by);
         let found = jackknife::replicates(&parts, &all).chain(open).map(rigid);
