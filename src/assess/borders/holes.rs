@@ -129,7 +129,8 @@ pub(super) fn overlaps(hole: &Hole, other: &Hole) -> bool {
 /// The holes of a part at whose middle the other one is solid, and the rest. Each part comes with the motion to its
 /// frame from that of the holes. Holes of a layer that lies behind another one of their own part, as where parts of an
 /// assembly are joined, say nothing of what lies on that and are left out. So are holes no larger than the elements of
-/// the other part where that has none as small as they are, `smallest` being the radius of its smallest hole: its mesh leaves them out.
+/// the other part where that has none as small as they are, `smallest` being the radius of its smallest hole: its mesh
+/// leaves them out.
 pub(super) fn solid_at(
     mut holes: Vec<Hole>,
     (own, own_from_holes): (&Surface, &Similarity),
