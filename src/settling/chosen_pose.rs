@@ -1,6 +1,8 @@
 //! A pose that takes the place of the result, and the others beside it.
 
-use super::candidate::Candidate;
+use std::cmp::Ordering;
+
+use super::candidate::{Candidate, Judged};
 use crate::geometry::Similarity;
 use crate::registration::{Alternative, MatchOutcome, Surface, same_pose};
 
@@ -38,10 +40,33 @@ impl ChosenPose {
         outcome.alternatives = self.alternatives;
     }
 
+    /// The first in an order of the poses beside the result of `outcome` that are better than it, as `is_better` decides
+    /// of a pose and the result. `None` where there is none.
+    pub(super) fn best_of(
+        (judged, outcome): (Judged, &MatchOutcome),
+        is_better: impl Fn(&Candidate, &Candidate) -> bool,
+        order: impl Fn(&Candidate, &Candidate) -> Ordering,
+        source: &Surface,
+    ) -> Option<Self> {
+        let Judged {
+            result,
+            mut candidates,
+        } = judged;
+        candidates.retain(|other| is_better(other, &result));
+        candidates.sort_by(order);
+        let (winner, others) = candidates.split_first()?;
+        Some(Self::in_place_of(
+            (outcome, &result),
+            winner,
+            others,
+            source,
+        ))
+    }
+
     /// A pose that takes the place of `result`, that of `outcome`. Beside it come those that were found with it, the
     /// result before, and its alternatives. Only one under which the shapes differ no more is as likely, or that
     /// nothing but surfaces distinguishes from the winner.
-    pub(super) fn in_place_of(
+    fn in_place_of(
         (outcome, result): (&MatchOutcome, &Candidate),
         winner: &Candidate,
         found_too: &[Candidate],

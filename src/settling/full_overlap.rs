@@ -33,8 +33,9 @@ const STILL: f64 = 0.02;
 const ASIDE: f64 = 2.0;
 
 /// The pose under which much more of the smaller part meets the other than under that of `outcome`, or as much where
-/// the shapes differ under that one, or all of it with its outlines all round, while nothing but springback within the tolerance keeps them apart. `None` where
-/// there is none, and where the parts meet as a whole without a difference. O(first poses · nodes · log triangles).
+/// the shapes differ under that one, or all of it with its outlines all round, while nothing but springback within the
+/// tolerance keeps them apart. `None` where there is none, and where the parts meet as a whole without a difference.
+/// O(first poses · nodes · log triangles).
 pub fn placed_as_a_whole(
     context: &PairContext<'_>,
     outcome: &MatchOutcome,
@@ -54,28 +55,27 @@ pub fn placed_as_a_whole(
     let far = ASIDE * distances.tolerance.springback;
     poses.retain(|pose| context.displacement(pose, found) > far);
     let few = FewPlaces::new(context, 1.0);
-    let Judged {
-        result,
-        mut candidates,
-    } = judged(context, (*found, Some(shape)), &poses, |pose, shape| {
+    let others = judged(context, (*found, Some(shape)), &poses, |pose, shape| {
         few.candidate(pose, shape)
     })?;
-    if has_nothing_open(&result) {
+    if has_nothing_open(&others.result) {
         return Ok(None);
     }
-    candidates.retain(|other| {
+    let is_better = |other: &Candidate, result: &Candidate| {
         let explains_more = other.met > MUCH_MORE * result.met
-            || result.differs() && other.meets_as_much_as(&result);
+            || result.differs() && other.meets_as_much_as(result);
         let is_explained = result.lies_much_closer_elsewhere_than(other, distances.noise);
-        let is_better = explains_more && !is_explained || other.fits_all_round_beside(&result);
+        let is_better = explains_more && !is_explained || other.fits_all_round_beside(result);
         other.is_one_shape && is_better
-    });
-    candidates.sort_by(|a, b| a.apart().total_cmp(&b.apart()));
-    let source = context.source;
-    let best = candidates.split_first();
-    Ok(best.map(|(winner, others)| {
-        ChosenPose::in_place_of((outcome, &result), winner, others, source)
-    }))
+    };
+    let by_gap = |a: &Candidate, b: &Candidate| a.apart().total_cmp(&b.apart());
+    let judged = (others, outcome);
+    Ok(ChosenPose::best_of(
+        judged,
+        is_better,
+        by_gap,
+        context.source,
+    ))
 }
 
 /// The first poses of the match of the hand that it found, each once.

@@ -1,10 +1,8 @@
 //! Poses from holes, whatever the match found: do more holes lie on like ones under one of them?
 
-use std::cmp::Reverse;
-
 use rayon::prelude::*;
 
-use super::candidate::{Candidate, Judged, judged};
+use super::candidate::{Candidate, judged};
 use super::chosen_pose::ChosenPose;
 use super::context::PairContext;
 use super::refine_with_borders::{Least, Refinement};
@@ -45,21 +43,24 @@ pub fn placed_by_holes(
     let refine = |pose: &Similarity| Ok(refinement.refined(pose, Least::Any)?.unwrap_or(*pose));
     let on_holes = poses(context)?;
     let refined: Result<Vec<Similarity>, Cancelled> = on_holes.par_iter().map(refine).collect();
-    let Judged {
-        result,
-        candidates: mut better,
-    } = judged(context, (*found, Some(shape)), &refined?, |pose, shape| {
+    let others = judged(context, (*found, Some(shape)), &refined?, |pose, shape| {
         Candidate::at(pose, shape)
     })?;
-    better.retain(|other| {
+    let is_better = |other: &Candidate, result: &Candidate| {
         let differs_less = is_piece && result.differs() && !other.differs();
-        (differs_less || other.beats(&result)) && other.meets_as_much_as(&result)
-    });
-    better.sort_by_key(|other| (other.n_differences, Reverse(other.n_holes)));
-    let best = better.split_first();
-    Ok(best.map(|(winner, others)| {
-        ChosenPose::in_place_of((outcome, &result), winner, others, source)
-    }))
+        (differs_less || other.beats(result)) && other.meets_as_much_as(result)
+    };
+    let by_differences = |a: &Candidate, b: &Candidate| {
+        let by_holes = b.n_holes.cmp(&a.n_holes);
+        a.n_differences.cmp(&b.n_differences).then(by_holes)
+    };
+    let judged = (others, outcome);
+    Ok(ChosenPose::best_of(
+        judged,
+        is_better,
+        by_differences,
+        source,
+    ))
 }
 
 /// Whether both parts have holes, and a pose like this one is looked for by them.

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::candidate::{Candidate, FewPlaces, Judged, ON_EACH_OTHER, judged, off_for_its_size};
+use super::candidate::{Candidate, FewPlaces, ON_EACH_OTHER, judged, off_for_its_size};
 use super::chosen_pose::ChosenPose;
 use super::context::PairContext;
 use super::holes::found_by;
@@ -53,25 +53,24 @@ pub fn placed_by_pieces(
     let refinement = Refinement::new(context, found.scale, MAX_NODES);
     let refine = |pose: &Similarity| Ok(refinement.closest(pose)?.unwrap_or(*pose));
     let refined: Result<Vec<Similarity>, Cancelled> = poses.par_iter().map(refine).collect();
-    let Judged {
-        result,
-        candidates: mut better,
-    } = judged(context, (*found, Some(shape)), &refined?, |pose, shape| {
+    let others = judged(context, (*found, Some(shape)), &refined?, |pose, shape| {
         few.overhanging(pose, shape)
     })?;
-    better.retain(|other| {
-        other.fits_as_a_piece_beside(&result, distances.noise)
-            || other.beats(&result) && other.meets_as_much_as(&result)
-    });
-    better.sort_by(|a, b| {
-        let by_holes = a.n_alone.cmp(&b.n_alone);
+    let is_better = |other: &Candidate, result: &Candidate| {
+        other.fits_as_a_piece_beside(result, distances.noise)
+            || other.beats(result) && other.meets_as_much_as(result)
+    };
+    let by_holes = |a: &Candidate, b: &Candidate| {
         let [off_a, off_b] = [a, b].map(|other| off_for_its_size(other.meeting()));
-        by_holes.then(off_a.total_cmp(&off_b))
-    });
-    let best = better.split_first();
-    Ok(best.map(|(winner, others)| {
-        ChosenPose::in_place_of((outcome, &result), winner, others, context.source)
-    }))
+        a.n_alone.cmp(&b.n_alone).then(off_a.total_cmp(&off_b))
+    };
+    let judged = (others, outcome);
+    Ok(ChosenPose::best_of(
+        judged,
+        is_better,
+        by_holes,
+        context.source,
+    ))
 }
 
 /// The distinct poses of pieces under which the parts, which meet as `own` under the result, may lie closer, the closest

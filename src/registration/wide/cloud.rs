@@ -132,13 +132,10 @@ impl Cloud {
                 to.normal[k][place % LANES] = from.normal[k][i % LANES];
             }
         }
-        let mut shift = middle / self.scale;
-        if self.is_mirrored {
-            shift.x = -shift.x;
-        }
+        let data_from_local = self.local_from_data().inverse();
         Self {
             blocks,
-            center: self.center + shift,
+            center: data_from_local.apply(&Point3::from(middle / self.scale)),
             diagonal: (high - low).norm() as f32,
             ..*self
         }

@@ -44,8 +44,10 @@ pub(super) struct Candidate {
 /// data's diagonal, are one.
 const SAME_COS: f32 = 0.998_6;
 const SAME_SHIFT: f32 = 0.02;
-/// Poses moved by one thread at a time.
+/// Poses moved by one thread at a time, at most, …
 const CHUNK: usize = 16;
+/// … and fewer where there are so few poses that not all threads had as many.
+const LEAST_CHUNKS: usize = 16;
 
 /// The surfaces of a search.
 #[derive(Clone, Copy)]
@@ -75,7 +77,8 @@ pub(super) fn run(
         .collect();
     for (index, round) in rounds.iter().enumerate() {
         monitor.progress("wide search", index as u64, Some(rounds.len() as u64));
-        field.par_chunks_mut(CHUNK).try_for_each(|candidates| {
+        let chunk = (field.len() / LEAST_CHUNKS).clamp(1, CHUNK);
+        field.par_chunks_mut(chunk).try_for_each(|candidates| {
             monitor.check()?;
             for candidate in candidates {
                 if !monitor.stop_requested() {
