@@ -5,7 +5,7 @@
 use rayon::prelude::*;
 
 use super::border_choice::MUCH_MORE;
-use super::candidate::{Candidate, FewPlaces, Judged, judged};
+use super::candidate::{Candidate, FewPlaces, judged};
 use super::chosen_pose::ChosenPose;
 use super::context::PairContext;
 use crate::assess::contact::{ContactSearch, FEW_NODES};
