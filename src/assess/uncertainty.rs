@@ -446,14 +446,13 @@ mod tests {
         assert_eq!(uncertainty(&flat, &flat, &still).unknown_offset, 0.0);
     }
 
-    /// A smooth panel, curved more towards one end, with a twist of so many millimetres.
-    fn panel(twist: f64) -> Surface {
+    /// A panel of 600 mm whose height is given over places from −1 to 1.
+    fn panel(height: impl Fn(f64, f64) -> f64) -> Surface {
         const N: u32 = 40;
         let points = (0..=N).flat_map(|i| (0..=N).map(move |j| [i, j]));
         let points = points.map(|[i, j]| {
             let [u, v] = [i, j].map(|k| f64::from(k) / 20.0 - 1.0);
-            let height = 30.0 * u * u + 15.0 * u.powi(3) + 15.0 * v * v;
-            Point3::new(300.0 * u, 300.0 * v, height + twist * u * v)
+            Point3::new(300.0 * u, 300.0 * v, height(u, v))
         });
         let up = N + 1;
         let cells = (0..N).flat_map(|i| (0..N).map(move |j| i * up + j));
@@ -462,11 +461,32 @@ mod tests {
         Surface::new(&mesh, "panel").unwrap()
     }
 
+    /// What is stated of a panel beside the same one with `added` to its height.
+    fn stated_beside(
+        height: impl Fn(f64, f64) -> f64,
+        added: impl Fn(f64, f64) -> f64,
+    ) -> PoseUncertainty {
+        let changed = panel(|u, v| height(u, v) + added(u, v));
+        uncertainty(&changed, &panel(height), &Similarity::identity())
+    }
+
     #[test]
     fn a_bend_that_explains_the_gaps_leaves_little_open() {
-        // The fit that takes the twist for none is turned by it ten times as far.
-        let stated = uncertainty(&panel(1.2), &panel(0.0), &Similarity::identity());
-        assert!(stated.largest < 20.0, "{stated:?}");
+        let bowl = |u: f64, v: f64| 30.0 * u * u + 18.0 * v * v;
+        let bend = 1.2;
+        let bent = stated_beside(bowl, |u, v| bend * u * u * v);
+        let ragged = stated_beside(bowl, |u, v| bend * (9.0 * u).sin() * (7.0 * v).cos());
+        assert!(bent.largest < 3.0, "{} {}", bent.largest, ragged.largest);
+        assert!(
+            ragged.largest > bent.largest,
+            "{} {}",
+            bent.largest,
+            ragged.largest
+        );
+        // A fit that takes the twist for part of the pose is turned by it a hundred times as far.
+        let towards_one_end = |u: f64, v: f64| 30.0 * u * u + 15.0 * u.powi(3) + 15.0 * v * v;
+        let twisted = stated_beside(towards_one_end, |u, v| bend * u * v);
+        assert!(twisted.largest < 20.0, "{twisted:?}");
     }
 
     /// Where it is open whether gaps are an offset, a pose that takes them for one is off by the step to the

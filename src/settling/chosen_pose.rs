@@ -40,27 +40,23 @@ impl ChosenPose {
         outcome.alternatives = self.alternatives;
     }
 
-    /// The first in an order of the poses beside the result of `outcome` that are better than it, as `is_better` decides
-    /// of a pose and the result. `None` where there is none.
+    /// Of the poses that were judged beside the result of `outcome`, the first in `order` of those that `is_better` than
+    /// it. `None` where none is.
     pub(super) fn best_of(
-        (judged, outcome): (Judged, &MatchOutcome),
-        is_better: impl Fn(&Candidate, &Candidate) -> bool,
-        order: impl Fn(&Candidate, &Candidate) -> Ordering,
-        source: &Surface,
-    ) -> Option<Self> {
-        let Judged {
+        Judged {
             result,
             mut candidates,
-        } = judged;
+        }: Judged,
+        outcome: &MatchOutcome,
+        source: &Surface,
+        is_better: impl Fn(&Candidate, &Candidate) -> bool,
+        order: impl Fn(&Candidate, &Candidate) -> Ordering,
+    ) -> Option<Self> {
         candidates.retain(|other| is_better(other, &result));
         candidates.sort_by(order);
         let (winner, others) = candidates.split_first()?;
-        Some(Self::in_place_of(
-            (outcome, &result),
-            winner,
-            others,
-            source,
-        ))
+        let before = (outcome, &result);
+        Some(Self::in_place_of(before, winner, others, source))
     }
 
     /// A pose that takes the place of `result`, that of `outcome`. Beside it come those that were found with it, the

@@ -55,10 +55,10 @@ pub fn placed_as_a_whole(
     let far = ASIDE * distances.tolerance.springback;
     poses.retain(|pose| context.displacement(pose, found) > far);
     let few = FewPlaces::new(context, 1.0);
-    let others = judged(context, (*found, Some(shape)), &poses, |pose, shape| {
+    let moved = judged(context, (*found, Some(shape)), &poses, |pose, shape| {
         few.candidate(pose, shape)
     })?;
-    if has_nothing_open(&others.result) {
+    if has_nothing_open(&moved.result) {
         return Ok(None);
     }
     let is_better = |other: &Candidate, result: &Candidate| {
@@ -69,13 +69,8 @@ pub fn placed_as_a_whole(
         other.is_one_shape && is_better
     };
     let by_gap = |a: &Candidate, b: &Candidate| a.apart().total_cmp(&b.apart());
-    let judged = (others, outcome);
-    Ok(ChosenPose::best_of(
-        judged,
-        is_better,
-        by_gap,
-        context.source,
-    ))
+    let best = ChosenPose::best_of(moved, outcome, context.source, is_better, by_gap);
+    Ok(best)
 }
 
 /// The first poses of the match of the hand that it found, each once.

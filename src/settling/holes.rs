@@ -41,9 +41,9 @@ pub fn placed_by_holes(
     }
     let refinement = Refinement::new(context, 1.0, MAX_NODES);
     let refine = |pose: &Similarity| Ok(refinement.refined(pose, Least::Any)?.unwrap_or(*pose));
-    let on_holes = poses(context)?;
-    let refined: Result<Vec<Similarity>, Cancelled> = on_holes.par_iter().map(refine).collect();
-    let others = judged(context, (*found, Some(shape)), &refined?, |pose, shape| {
+    let found_on_holes = poses(context)?.par_iter();
+    let refined: Result<Vec<Similarity>, Cancelled> = found_on_holes.map(refine).collect();
+    let on_holes = judged(context, (*found, Some(shape)), &refined?, |pose, shape| {
         Candidate::at(pose, shape)
     })?;
     let is_better = |other: &Candidate, result: &Candidate| {
@@ -54,13 +54,8 @@ pub fn placed_by_holes(
         let by_holes = b.n_holes.cmp(&a.n_holes);
         a.n_differences.cmp(&b.n_differences).then(by_holes)
     };
-    let judged = (others, outcome);
-    Ok(ChosenPose::best_of(
-        judged,
-        is_better,
-        by_differences,
-        source,
-    ))
+    let best = ChosenPose::best_of(on_holes, outcome, context.source, is_better, by_differences);
+    Ok(best)
 }
 
 /// Whether both parts have holes, and a pose like this one is looked for by them.

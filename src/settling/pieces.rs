@@ -53,7 +53,7 @@ pub fn placed_by_pieces(
     let refinement = Refinement::new(context, found.scale, MAX_NODES);
     let refine = |pose: &Similarity| Ok(refinement.closest(pose)?.unwrap_or(*pose));
     let refined: Result<Vec<Similarity>, Cancelled> = poses.par_iter().map(refine).collect();
-    let others = judged(context, (*found, Some(shape)), &refined?, |pose, shape| {
+    let on_pieces = judged(context, (*found, Some(shape)), &refined?, |pose, shape| {
         few.overhanging(pose, shape)
     })?;
     let is_better = |other: &Candidate, result: &Candidate| {
@@ -64,13 +64,8 @@ pub fn placed_by_pieces(
         let [off_a, off_b] = [a, b].map(|other| off_for_its_size(other.meeting()));
         a.n_alone.cmp(&b.n_alone).then(off_a.total_cmp(&off_b))
     };
-    let judged = (others, outcome);
-    Ok(ChosenPose::best_of(
-        judged,
-        is_better,
-        by_holes,
-        context.source,
-    ))
+    let best = ChosenPose::best_of(on_pieces, outcome, context.source, is_better, by_holes);
+    Ok(best)
 }
 
 /// The distinct poses of pieces under which the parts, which meet as `own` under the result, may lie closer, the closest

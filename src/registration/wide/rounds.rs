@@ -44,9 +44,9 @@ pub(super) struct Candidate {
 /// data's diagonal, are one.
 const SAME_COS: f32 = 0.998_6;
 const SAME_SHIFT: f32 = 0.02;
-/// Poses moved by one thread at a time, at most, …
+/// Poses moved by one thread at a time at most.
 const CHUNK: usize = 16;
-/// … and fewer where there are so few poses that not all threads had as many.
+/// Few poses are shared out in about so many chunks, so that no thread is left without one.
 const LEAST_CHUNKS: usize = 16;
 
 /// The surfaces of a search.
