@@ -2116,6 +2116,43 @@ fn the_picture_stays_where_it_is_when_another_map_has_another_legend() {
 }
 
 #[test]
+fn a_legend_that_comes_up_covers_no_part_that_was_only_turned_by_hand() {
+    let role = Role::Crash;
+    let room = |beside: f64| {
+        let covered = Covered {
+            beside: [0.0, beside],
+            above: if beside > 0.0 { 0.7 } else { 0.0 },
+            ..Covered::default()
+        };
+        ViewCommand::SetRoom(
+            role,
+            ViewRoom {
+                aspect: 1.0,
+                covered,
+            },
+        )
+    };
+    let after_legend = |height: f64| {
+        let mut window = Window::with_both();
+        window.apply(room(0.0));
+        let mut by_hand = *window.state.view.cameras.get(role);
+        by_hand.set_standard_view(StandardView::Top);
+        by_hand.height *= height;
+        window.apply(ViewCommand::SetCamera(role, by_hand));
+        window.apply(room(0.4));
+        (by_hand, *window.state.view.cameras.get(role), window)
+    };
+    let (by_hand, shown, mut window) = after_legend(1.0);
+    assert_eq!(shown.world_from_view, by_hand.world_from_view);
+    window.apply(ViewCommand::FitAll(role));
+    assert_eq!(shown, *window.state.view.cameras.get(role));
+    assert_ne!(shown, by_hand);
+    // What was brought closer stays as it is.
+    let (close, shown, _) = after_legend(0.2);
+    assert_eq!(shown, close);
+}
+
+#[test]
 fn unused_parts_are_shown_on_request_and_change_nothing_but_the_picture() {
     let mut window = Window::new();
     window.open("car.k", Role::Crash);
@@ -2253,10 +2290,10 @@ fn the_stamped_part_is_shown_as_loaded_and_its_pose_stays() {
 fn the_free_window_has_a_use_of_its_own_and_the_left_camera() {
     let mut window = Window::with_both();
     assert_eq!(window.state.free_window(), None);
-    assert_eq!(window.state.camera_of(Role::Stamped), Role::Stamped);
+    assert_eq!(window.state.view.camera_of(Role::Stamped), Role::Stamped);
     window.apply(ViewCommand::ToggleMoveOver);
     assert_eq!(window.state.free_window(), Some(FreeWindow::FullMesh));
-    assert_eq!(window.state.camera_of(Role::Stamped), Role::Crash);
+    assert_eq!(window.state.view.camera_of(Role::Stamped), Role::Crash);
     window.apply(ViewCommand::SetFreeWindow(FreeWindow::Alternative));
     assert_eq!(
         window.state.free_window(),

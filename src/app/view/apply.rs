@@ -129,13 +129,11 @@ impl ViewState {
     fn turn_camera(&mut self, role: Role, scene: &Scene<'_>, turn: impl FnOnce(&mut Camera)) {
         self.remember_camera(role);
         let mut camera = *self.cameras.get(role);
-        // Turned by hand it is no longer fitted, but nothing was brought closer.
-        let fitted = *self.fitted.get(role);
-        let is_fitted = fitted.is_some_and(|fitted| fitted.camera.height == camera.height);
+        let is_whole = self.is_as_close_as_fitted(role);
         turn(&mut camera);
         self.set_camera(role, camera);
         // What was seen whole is seen whole from there too.
-        if is_fitted {
+        if is_whole {
             let room = self.kept_room(role, scene);
             self.refit(role, &room, scene);
         }
@@ -172,23 +170,34 @@ impl ViewState {
         fitted.map_or(room, |fitted| room.keeping_legend_of(&fitted.room))
     }
 
-    /// Takes over the shape of a window and what lies over it; what was seen whole stays so.
+    /// Takes over the shape of a window and what lies over it; what was seen whole stays so. A legend that comes up
+    /// would cover the part, also where the camera was turned by hand: it then shows the part whole again, from the
+    /// same side.
     fn set_room(&mut self, role: Role, room: ViewRoom, scene: &Scene<'_>) {
-        *self.rooms.get_mut(role) = room;
-        self.keep_whole(role, scene);
+        let before = std::mem::replace(self.rooms.get_mut(role), room);
+        let of = self.camera_of(role);
+        if room.has_legend_where_free(&before) && self.is_as_close_as_fitted(of) {
+            let room = self.kept_room(of, scene);
+            self.refit(of, &room, scene);
+        } else {
+            self.keep_whole(role, scene);
+        }
     }
 
     /// What a window shows whole stays so, once it shows more.
     pub(in crate::app) fn keep_whole(&mut self, role: Role, scene: &Scene<'_>) {
-        let of = if self.is_moved_over {
-            Role::Crash
-        } else {
-            role
-        };
+        let of = self.camera_of(role);
         if self.is_fitted(of) {
             let room = self.kept_room(of, scene);
             self.refit(of, &room, scene);
         }
+    }
+
+    /// True while the user has brought nothing closer since a window was fitted: its camera was at most turned or
+    /// shifted.
+    fn is_as_close_as_fitted(&self, role: Role) -> bool {
+        let fitted = self.fitted.get(role).as_ref();
+        fitted.is_some_and(|fitted| fitted.camera.height == self.cameras.get(role).height)
     }
 
     /// Fits what a window shows, tightly: a turned sheet fills the picture better than its box.

@@ -134,13 +134,4 @@ impl AppState {
             (Some(_), Some(_)) => chosen,
         }
     }
-
-    /// The window whose camera a window has: while the right one is free, both have the left one's.
-    pub fn camera_of(&self, window: Role) -> Role {
-        if self.view.is_moved_over {
-            Role::Crash
-        } else {
-            window
-        }
-    }
 }

@@ -111,6 +111,15 @@ impl ViewState {
         }
     }
 
+    /// The window whose camera a window has: while the right one is free, both have the left one's.
+    pub fn camera_of(&self, window: Role) -> Role {
+        if self.is_moved_over {
+            Role::Crash
+        } else {
+            window
+        }
+    }
+
     /// Remembers the present camera before a jump.
     pub fn remember_camera(&mut self, role: Role) {
         *self.previous_cameras.get_mut(role) = *self.cameras.get(role);
@@ -190,9 +199,7 @@ impl ViewRoom {
     /// came to an edge that was free, is fitted anew.
     fn keeping_legend_of(&self, before: &Self) -> Self {
         let has_other_shape = (self.aspect / before.aspect).ln().abs() > 0.01;
-        let mut sides = self.covered.beside.iter().zip(&before.covered.beside);
-        let is_at_other_edge = sides.any(|(now, then)| *now > 0.0 && *then == 0.0);
-        if has_other_shape || is_at_other_edge {
+        if has_other_shape || self.has_legend_where_free(before) {
             return *self;
         }
         let Covered { beside, above, .. } = self.covered.union(&before.covered);
@@ -204,6 +211,12 @@ impl ViewRoom {
             },
             ..*self
         }
+    }
+
+    /// True if the legend is at an edge that was free `before`: it came up, or was moved there.
+    fn has_legend_where_free(&self, before: &Self) -> bool {
+        let mut sides = self.covered.beside.iter().zip(&before.covered.beside);
+        sides.any(|(now, then)| *now > 0.0 && *then == 0.0)
     }
 
     /// The room that is free in both of two windows that show one camera's picture.

@@ -241,7 +241,7 @@ pub fn menu_ui(ui: &mut Ui, row: &Row<'_>, state: &AppState, commands: &mut Vec<
     let like = Some(LikeWhat::Part(at));
     if ui.button(Action::FocusSelection.row().label).clicked() {
         commands.push(PartCommand::Select(Some(at)).into());
-        commands.push(ViewCommand::Focus(state.camera_of(at.role)).into());
+        commands.push(ViewCommand::Focus(state.view.camera_of(at.role)).into());
         ui.close();
     }
     let groups: [&[(&str, PartCommand)]; 3] = [

@@ -68,6 +68,6 @@ impl FrameContext<'_> {
 
     /// Whose camera it shows.
     pub fn camera_role(&self) -> Role {
-        self.state.camera_of(self.view.window)
+        self.state.view.camera_of(self.view.window)
     }
 }

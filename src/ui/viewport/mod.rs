@@ -118,7 +118,7 @@ impl Viewports {
         let look = Look::of(ui.visuals().dark_mode);
         let window = self.windows.get_mut(role);
         window.notice_restored(state);
-        window::tell_focus(&response, state.camera_of(role), state, commands);
+        window::tell_focus(&response, state.view.camera_of(role), state, commands);
         let view = self.view_frame(ui, role, state, rect, commands);
         let picture = self.picture_of(ui, &view, state, &look);
         let frame = FrameContext {
@@ -212,7 +212,7 @@ impl Viewports {
         let of = if over < 1.0 {
             role
         } else {
-            state.camera_of(role)
+            state.view.camera_of(role)
         };
         let mut camera = *state.view.cameras.get(of);
         if role == Role::Crash {

@@ -203,7 +203,7 @@ pub(super) fn summary(state: &AppState, role: Role) -> String {
     if let Some(free) = state.free_window().filter(|_| role == Role::Stamped) {
         return format!("{name}, moved to the left window; here: {}", free.label());
     }
-    let camera = state.view.cameras.get(state.camera_of(role));
+    let camera = state.view.cameras.get(state.view.camera_of(role));
     let view = camera.standard_view().map_or_else(String::new, |view| {
         format!(", {} view", view.label().to_lowercase())
     });

@@ -318,7 +318,7 @@ pub(super) fn pivot(ui: &Ui, over: &Overlay<'_>) {
         .state
         .view
         .pivot
-        .get(over.frame.state.camera_of(over.role()))
+        .get(over.frame.state.view.camera_of(over.role()))
         && let Some(at) = pos_of(over.frame.rect(), camera, pivot)
     {
         for way in [vec2(6.0, 0.0), vec2(0.0, 6.0)] {
