@@ -4,15 +4,14 @@
 use std::time::{Duration, Instant};
 
 use super::context::Context;
-use super::frame::Frame;
+use super::frame::{Frame, Seen};
 use super::mesh_cache::MeshCache;
 use super::pipeline::Gpu;
 use super::prepare::{Detail, Prepared};
-use super::scene::{Scene, Sheet};
+use super::scene::Sheet;
 use super::slice::Slice;
 use super::target::{ViewTarget, within_limit};
 use super::uniforms::Region;
-use crate::geometry::Camera;
 
 /// A view that has not moved for so long is drawn exactly.
 const SETTLED: Duration = Duration::from_millis(120);
@@ -43,7 +42,7 @@ pub enum Drawn {
 #[derive(Debug, Default)]
 pub(super) struct Steps {
     /// What was asked for last, and since when the view rests.
-    asked: Option<(Scene, Camera)>,
+    asked: Option<Seen>,
     since: Option<Instant>,
     /// Since when the picture shows looks of before.
     stale_since: Option<Instant>,
@@ -102,17 +101,14 @@ impl Pace {
 
 impl Steps {
     fn asks_for(&self, frame: &Frame<'_>) -> bool {
-        let same =
-            |(scene, camera): &(Scene, Camera)| scene == frame.scene && camera == frame.camera;
-        self.asked.as_ref().is_some_and(same)
+        self.asked.as_ref().is_some_and(|asked| asked.is_of(frame))
     }
 
     /// True if the frame shows something at another place than the one before.
     fn moves_to(&self, frame: &Frame<'_>) -> bool {
-        let stands = |(scene, camera): &(Scene, Camera)| {
-            camera == frame.camera && frame.scene.lies_as(scene)
-        };
-        !self.asked.as_ref().is_some_and(stands)
+        self.asked
+            .as_ref()
+            .is_none_or(|asked| !asked.lies_as(frame))
     }
 }
 
@@ -145,7 +141,7 @@ impl ViewTarget {
         let is_other = !steps.asks_for(&frame);
         if is_other || is_new {
             steps.pending = None;
-            steps.asked = Some((frame.scene.clone(), *frame.camera));
+            steps.asked = Some(Seen::of(&frame));
         }
         let stale_since = *steps.stale_since.get_or_insert(now);
         if is_moving || (is_other && now.duration_since(stale_since) > STALE) {

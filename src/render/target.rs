@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::context::Context;
-use super::frame::Frame;
+use super::frame::{Frame, Seen};
 use super::mesh_cache::MeshCache;
 use super::pipeline::{COLOR_FORMAT, DEPTH_FORMAT, Gpu, MASK_FORMAT, SAMPLES};
 use super::prepare::{Detail, Prepared};
@@ -13,7 +13,6 @@ use super::slice::Slice;
 use super::steps::Steps;
 use super::texture::{attachment, slice_pass, texture, view};
 use super::uniforms::Region;
-use crate::geometry::Camera;
 
 /// Pixels of the window per pixel of a coarse picture, on each axis, where a processor draws: as few as leave
 /// frames quick, which are more while other work keeps it busy.
@@ -27,7 +26,7 @@ const QUICK: Duration = Duration::from_millis(45);
 #[derive(Debug, Default)]
 pub struct ViewTarget {
     pub(super) textures: Option<Textures>,
-    pub(super) drawn: Option<(Scene, Camera)>,
+    pub(super) drawn: Option<Seen>,
     pub(super) steps: Steps,
     /// Smaller textures for coarse pictures, and whether the last picture is in them.
     small: Option<Textures>,
@@ -141,9 +140,7 @@ impl ViewTarget {
 
     /// True if the picture shows this frame, exactly.
     pub(super) fn shows(&self, frame: &Frame<'_>) -> bool {
-        let same =
-            |(scene, camera): &(Scene, Camera)| scene == frame.scene && camera == frame.camera;
-        self.drawn.as_ref().is_some_and(same)
+        self.drawn.as_ref().is_some_and(|drawn| drawn.is_of(frame))
     }
 
     /// Records the drawing if anything changed; returns whether it did.
@@ -163,8 +160,7 @@ impl ViewTarget {
         if let Some(textures) = &mut self.textures {
             textures.draw_all(gpu, context, cache, encoder, (&frame, Detail::Exact));
         }
-        self.is_small = false;
-        self.drawn = Some((frame.scene.clone(), *frame.camera));
+        self.show_exact(&frame);
         true
     }
 
@@ -207,7 +203,7 @@ impl ViewTarget {
     /// The picture in the large textures is finished.
     pub(super) fn show_exact(&mut self, frame: &Frame<'_>) {
         self.is_small = false;
-        self.drawn = Some((frame.scene.clone(), *frame.camera));
+        self.drawn = Some(Seen::of(frame));
     }
 }
 
