@@ -6,6 +6,7 @@ use super::mesh_cache::MeshCache;
 use super::pick::PickRequest;
 use super::pipeline::Gpu;
 use super::readback::{Download, ReadbackError, unpremultiply};
+use super::scene::Rgba;
 use super::steps::Drawn;
 use super::target::ViewTarget;
 
@@ -21,7 +22,7 @@ pub struct Renderer {
 
 impl Renderer {
     /// Compiles the shaders. `window_format` is the format of the target that [`Renderer::paint`]
-    /// paints to; pictures themselves do not depend on it.
+    /// and [`Renderer::fill`] paint to; pictures themselves do not depend on it.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
@@ -80,6 +81,11 @@ impl Renderer {
         if let Some((group, is_stretched)) = target.composite() {
             self.context.composite.draw(pass, group, is_stretched);
         }
+    }
+
+    /// Fills the pass's viewport with a colour, opaque. The pass must be as for [`Renderer::paint`].
+    pub fn fill(&self, color: Rgba, pass: &mut wgpu::RenderPass<'_>) {
+        self.context.fill.draw(pass, color);
     }
 
     /// Draws a frame and waits for it: for pictures in files. Opacity is not premultiplied.

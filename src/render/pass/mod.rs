@@ -4,6 +4,7 @@
 pub(super) mod background;
 pub(super) mod composite;
 pub(super) mod edges;
+pub(super) mod fill;
 pub(super) mod outline;
 pub(super) mod overlay;
 pub(super) mod points;

@@ -150,7 +150,7 @@ fn pane_ui(
     }
     let rect = ui.max_rect();
     let palette = Palette::of(ui);
-    ui.painter().rect_filled(rect, 0.0, palette.ground);
+    ui.painter().add(viewports.fill(rect, palette.ground));
     if is_away {
         away_ui(ui, rect, state, commands);
     } else {
@@ -161,7 +161,8 @@ fn pane_ui(
 /// The section laid flat, below the choice of what the window shows.
 fn drawing_ui(ui: &mut Ui, state: &AppState, viewports: &Viewports, commands: &mut Vec<Command>) {
     let rect = ui.max_rect();
-    ui.painter().rect_filled(rect, 0.0, Palette::of(ui).ground);
+    ui.painter()
+        .add(viewports.fill(rect, Palette::of(ui).ground));
     let inner = rect.shrink2(vec2(14.0, 10.0));
     ui.scope_builder(UiBuilder::new().max_rect(inner), |ui| {
         ui.spacing_mut().item_spacing = vec2(UNIT, UNIT);

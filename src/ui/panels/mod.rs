@@ -22,7 +22,7 @@ pub mod stamped_files;
 pub mod top_bar;
 pub mod units;
 
-use egui::{Frame, Margin, Panel, ScrollArea, Sense, Ui, UiBuilder, vec2};
+use egui::{Frame, InnerResponse, Margin, Panel, ScrollArea, Sense, Shape, Ui, UiBuilder, vec2};
 
 use super::project_dialogs::restore_ui;
 use super::theme::{Palette, UNIT};
@@ -51,17 +51,19 @@ pub fn window_ui(
     commands: &mut Vec<Command>,
 ) {
     let palette = Palette::of(ui);
+    // Below all panels.
+    let whole = ui.ctx().content_rect();
+    ui.painter().add(viewports.fill(whole, palette.panel));
     if state.view.is_graphics_only {
         graphics::graphics_ui(ui, state, viewports, commands);
         return;
     }
     let [column, pane] = state.settings.pane_sizes;
-    let bar = Frame::new()
-        .fill(palette.bar)
-        .inner_margin(Margin::symmetric(8, 4));
-    Panel::top("top bar")
-        .frame(bar)
-        .show(ui, |ui| top_bar::top_bar_ui(ui, state, commands));
+    on_bar(ui, viewports, |ui| {
+        Panel::top("top bar")
+            .frame(Frame::new().inner_margin(Margin::symmetric(8, 4)))
+            .show(ui, |ui| top_bar::top_bar_ui(ui, state, commands))
+    });
     restore_ui(ui, state, commands);
     let shown = &*viewports;
     let bottom = |ui: &mut Ui, commands: &mut Vec<Command>| {
@@ -78,7 +80,7 @@ pub fn window_ui(
             .resizable(true)
             .default_size(size)
             .size_range(100.0..=(0.6 * room).max(120.0))
-            .frame(Frame::new().fill(palette.panel).inner_margin(Margin::ZERO))
+            .frame(Frame::NONE)
             .show(ui, |ui| bottom::bottom_ui(ui, state, shown, commands));
         shown.response.rect.height()
     };
@@ -119,7 +121,7 @@ pub fn window_ui(
         .resizable(true)
         .default_size(column.unwrap_or(COLUMN))
         .size_range(least..=most)
-        .frame(Frame::new().fill(palette.panel).inner_margin(Margin::ZERO))
+        .frame(Frame::NONE)
         .show(ui, |ui| left_column_ui(ui, state, commands));
     if is_tiny {
         graphics::graphics_ui(ui, state, viewports, commands);
@@ -128,6 +130,19 @@ pub fn window_ui(
     let height = height.unwrap_or_else(|| bottom(ui, commands));
     graphics::graphics_ui(ui, state, viewports, commands);
     remember_sizes(ui, state, [left.response.rect.width(), height], commands);
+}
+
+/// Shows a bar with its ground behind it.
+fn on_bar<R>(
+    ui: &mut Ui,
+    viewports: &Viewports,
+    show: impl FnOnce(&mut Ui) -> InnerResponse<R>,
+) -> InnerResponse<R> {
+    let behind = ui.painter().add(Shape::Noop);
+    let shown = show(ui);
+    let ground = viewports.fill(shown.response.rect, Palette::of(ui).bar);
+    ui.painter().set(behind, ground);
+    shown
 }
 
 /// The paper's three sections and the mapping, top to bottom.

@@ -1,6 +1,6 @@
 //! The left column folded to a rail: the numbers of its sections, each of which unfolds it.
 
-use egui::{CornerRadius, Frame, Margin, Panel, Rect, Sense, Stroke, TextStyle, Ui, pos2, vec2};
+use egui::{CornerRadius, Frame, Panel, Rect, Sense, Stroke, TextStyle, Ui, pos2, vec2};
 
 use crate::app::{AppState, Command, Section, ViewCommand};
 use crate::ui::theme::{Palette, TALL};
@@ -11,11 +11,10 @@ const WIDTH: f32 = 40.0;
 
 /// The rail.
 pub fn rail_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let fill = Palette::of(ui).panel;
     Panel::left("rail")
         .resizable(false)
         .exact_size(WIDTH)
-        .frame(Frame::new().fill(fill).inner_margin(Margin::ZERO))
+        .frame(Frame::NONE)
         .show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             for section in Section::ALL {

@@ -1,4 +1,5 @@
-//! Between egui and the renderer: draws a viewport's picture before egui's pass and lays it into it.
+//! Between egui and the renderer: draws a viewport's picture before egui's pass, lays it into it, and fills large
+//! areas.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -159,6 +160,31 @@ impl CallbackTrait for ViewCallback {
     ) {
         if let Some(gpu) = resources.get::<Gpu>() {
             gpu.renderer.paint(gpu.targets.get(self.role), pass);
+        }
+    }
+}
+
+/// One colour over an area of the window. egui samples its texture for every pixel of a filled rectangle, which
+/// is most of what a frame costs a software driver.
+struct FillCallback {
+    color: egui::Color32,
+}
+
+/// An area filled with an opaque colour, as a shape for egui's painter.
+pub(super) fn fill(rect: egui::Rect, color: egui::Color32) -> egui::Shape {
+    let callback = FillCallback { color };
+    eframe::egui_wgpu::Callback::new_paint_callback(rect, callback).into()
+}
+
+impl CallbackTrait for FillCallback {
+    fn paint(
+        &self,
+        _: egui::PaintCallbackInfo,
+        pass: &mut wgpu::RenderPass<'static>,
+        resources: &CallbackResources,
+    ) {
+        if let Some(gpu) = resources.get::<Gpu>() {
+            gpu.renderer.fill(self.color.to_array(), pass);
         }
     }
 }

@@ -99,6 +99,15 @@ impl Viewports {
         }
     }
 
+    /// A large area in one opaque colour.
+    pub fn fill(&self, rect: Rect, color: egui::Color32) -> egui::Shape {
+        if self.render_state.is_some() {
+            gpu::fill(rect, color)
+        } else {
+            egui::Shape::rect_filled(rect, 0.0, color)
+        }
+    }
+
     /// Shows one window in the rest of `ui`.
     pub fn show(&mut self, ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Command>) {
         let rect = ui.available_rect_before_wrap();

@@ -14,8 +14,9 @@ mod sweep;
 mod thumbnails;
 mod timings;
 
-use egui::{Align, Button, Frame, Layout, Margin, RichText, Stroke, Ui, vec2};
+use egui::{Align, Button, Frame, InnerResponse, Layout, Margin, RichText, Stroke, Ui, vec2};
 
+use super::on_bar;
 use crate::app::{Action, AppState, BottomTab, Command, ViewCommand};
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::viewport::Viewports;
@@ -30,7 +31,7 @@ pub fn bottom_ui(
 ) {
     ui.take_available_space();
     ui.spacing_mut().item_spacing.y = 0.0;
-    tabs_ui(ui, state, commands);
+    on_bar(ui, viewports, |ui| tabs_ui(ui, state, commands));
     let margin = Margin {
         left: 16,
         right: 8,
@@ -60,11 +61,8 @@ const NARROW: f32 = 440.0;
 /// Room for the status at the right of the tabs.
 const STATUS: f32 = 216.0;
 
-fn tabs_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let palette = Palette::of(ui);
-    let bar = Frame::new()
-        .fill(palette.bar)
-        .inner_margin(Margin::symmetric(8, 2));
+fn tabs_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) -> InnerResponse<()> {
+    let bar = Frame::new().inner_margin(Margin::symmetric(8, 2));
     bar.show(ui, |ui| {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
@@ -80,7 +78,7 @@ fn tabs_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 status_ui(ui, state, commands);
             });
         });
-    });
+    })
 }
 
 /// As many tabs as fit, the one that is shown among them; the rest stand in a menu at their end.
