@@ -10,7 +10,7 @@ const LARGE: usize = 150_000;
 /// About so many triangles a coarse picture has.
 pub const COARSE: usize = 40_000;
 /// The same where a processor draws, which takes its time for each of them however small it is.
-pub const COARSE_ON_PROCESSOR: usize = 20_000;
+pub const COARSE_ON_PROCESSOR: usize = 12_000;
 /// More lines than this are left out of a coarse picture.
 const MAX_LINES: usize = 60_000;
 

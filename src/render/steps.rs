@@ -19,15 +19,13 @@ const SETTLED: Duration = Duration::from_millis(120);
 const UPLOAD: Duration = Duration::from_millis(30);
 /// A picture of looks that are older than this gives way to a coarse one.
 const STALE: Duration = Duration::from_millis(400);
-/// Things (triangles, lines, nodes) drawn in the first slice.
-const FIRST: u64 = 80_000;
-/// The fewest in one: on a processor they take half as long as the rest of the frame. With fewer, the frames
-/// between the slices would take most of the time.
-const FEWEST: u64 = 40_000;
+/// Things (triangles, lines, nodes) drawn in the first slice, and the fewest in one: on a processor they take about
+/// as long as the rest of the frame. With fewer, the frames between the slices would take most of the time.
+const FEWEST: u64 = 20_000;
 const MOST: u64 = 1 << 32;
 /// Slices further apart than this become smaller, closer ones larger.
-const SLOW: Duration = Duration::from_millis(60);
-const QUICK: Duration = Duration::from_millis(30);
+const SLOW: Duration = Duration::from_millis(50);
+const QUICK: Duration = Duration::from_millis(25);
 
 /// How far the picture of a frame is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,7 +76,7 @@ struct Pace {
 impl Default for Pace {
     fn default() -> Self {
         Self {
-            n: FIRST,
+            n: FEWEST,
             last: None,
         }
     }

@@ -17,6 +17,7 @@ use super::uniforms::Region;
 /// Pixels of the window per pixel of a coarse picture, on each axis, where a processor draws: as few as leave
 /// frames quick, which are more while other work keeps it busy.
 const FINE: u32 = 2;
+const FIRST: u32 = 3;
 const COARSEST: u32 = 4;
 /// A frame with a coarse picture that took longer makes the next one coarser, a shorter one finer.
 const SLOW: Duration = Duration::from_millis(80);
@@ -92,7 +93,7 @@ impl ViewTarget {
     pub fn on_processor() -> Self {
         Self {
             grain: Some(Grain {
-                pixels: FINE,
+                pixels: FIRST,
                 is_drawn: false,
             }),
             ..Self::default()
@@ -393,7 +394,8 @@ mod tests {
             }
             target.grain.as_ref().map(|grain| grain.pixels)
         };
-        assert_eq!(after(&[60, 60], true), Some(2), "quick enough");
+        assert_eq!(after(&[60, 60], true), Some(3), "quick enough");
+        assert_eq!(after(&[30], true), Some(2));
         assert_eq!(after(&[300], false), Some(2), "another kind of frame");
         assert_eq!(after(&[90], true), Some(3));
         assert_eq!(after(&[90, 300, 300], true), Some(4));
