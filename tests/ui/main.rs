@@ -6,6 +6,7 @@
 mod bracket;
 mod distance;
 mod exports;
+mod fills;
 mod follow;
 mod inspect;
 mod keyboard;

@@ -16,15 +16,20 @@ const SIZE: [u32; 2] = [120, 90];
 const BLUE: [u8; 3] = [0x56, 0xB4, 0xE9];
 const ORANGE: [u8; 3] = [0xE6, 0x9F, 0x00];
 
-/// A renderer of its own on the device that all tests share; making a device is slower than any test.
-pub(super) fn new_renderer() -> Renderer {
+/// The device that all tests share; making one is slower than any test.
+pub(super) fn device() -> &'static RenderState {
     static STATE: OnceLock<RenderState> = OnceLock::new();
-    let state = STATE.get_or_init(|| {
+    STATE.get_or_init(|| {
         egui_kittest::wgpu::create_render_state(
             egui_kittest::wgpu::default_wgpu_setup(),
             RendererOptions::PREDICTABLE,
         )
-    });
+    })
+}
+
+/// A renderer of its own on that device.
+pub(super) fn new_renderer() -> Renderer {
+    let state = device();
     Renderer::new(&state.device, &state.queue, state.target_format)
 }
 

@@ -161,6 +161,16 @@ fn no_vertex_shader_branches_on_uniforms_alone() {
 }
 
 #[test]
+fn no_shader_samples_a_texture() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/render/shaders");
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let source = std::fs::read_to_string(&path).unwrap();
+        assert!(!source.contains("textureSample"), "{}", path.display());
+    }
+}
+
+#[test]
 fn branches_on_uniforms_are_seen_through_calls_and_operators() {
     let shader = |body: &str| {
         format!(

@@ -151,7 +151,7 @@ fn facts(record: &MapRecord, lengths: Lengths) -> Vec<[String; 3]> {
         ] {
             if range > 0.0 {
                 let note = "of the range, 95 % of the area".to_owned();
-                facts.push([name.to_owned(), percent(p95 / range), note]);
+                facts.push([name.to_owned(), share(p95 / range), note]);
             }
         }
     }

@@ -10,7 +10,7 @@ use super::{MapRun, ShownValue};
 use crate::mapping::Status;
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::forming_values::FormingValue;
-use crate::text::{Lengths, counted, fixed, length, percent, signed_percent};
+use crate::text::{Lengths, counted, fixed, length, percent, share, signed_percent};
 
 /// Share of the area that is to carry values where no other is asked for.
 pub(in crate::pipeline) const LEAST_AREA: f64 = 0.95;
@@ -169,7 +169,7 @@ pub(super) fn checks_of(
                     name: name.to_owned(),
                     // What the crash elements are too large for comes back smoothed, however it is
                     // mapped, so this is no verdict.
-                    found: percent(p95 / range),
+                    found: share(p95 / range),
                     limit: "of the range, P95".to_owned(),
                     is_met: None,
                     reason: None,

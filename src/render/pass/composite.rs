@@ -10,7 +10,6 @@ pub(in crate::render) struct Composite {
     /// For pictures that are stretched.
     stretched: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
-    sampler: wgpu::Sampler,
 }
 
 impl Composite {
@@ -21,19 +20,11 @@ impl Composite {
         });
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("composite"),
-            entries: &[
-                texture_entry(
-                    0,
-                    wgpu::ShaderStages::FRAGMENT,
-                    wgpu::TextureSampleType::Float { filterable: true },
-                ),
-                wgpu::BindGroupLayoutEntry {
-                    binding: 1,
-                    visibility: wgpu::ShaderStages::FRAGMENT,
-                    ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-                    count: None,
-                },
-            ],
+            entries: &[texture_entry(
+                0,
+                wgpu::ShaderStages::FRAGMENT,
+                wgpu::TextureSampleType::Float { filterable: false },
+            )],
         });
         let fragment = if format.is_srgb() {
             "fs_linear"
@@ -53,16 +44,10 @@ impl Composite {
             }
             .build(device)
         };
-        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("composite"),
-            mag_filter: wgpu::FilterMode::Linear,
-            ..Default::default()
-        });
         Self {
             exact: pipeline(0.0),
             stretched: pipeline(1.0),
             layout,
-            sampler,
         }
     }
 
@@ -74,16 +59,10 @@ impl Composite {
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("composite"),
             layout: &self.layout,
-            entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: wgpu::BindingResource::TextureView(picture),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::Sampler(&self.sampler),
-                },
-            ],
+            entries: &[wgpu::BindGroupEntry {
+                binding: 0,
+                resource: wgpu::BindingResource::TextureView(picture),
+            }],
         })
     }
 

@@ -1,7 +1,6 @@
-// Lays a finished picture on the window, texel for pixel.
+// Lays a finished picture on the window.
 
 @group(0) @binding(0) var picture: texture_2d<f32>;
-@group(0) @binding(1) var smooth_sampler: sampler;
 
 struct Varyings {
     @builtin(position) clip: vec4<f32>,
@@ -21,12 +20,20 @@ fn vs_main(@builtin(vertex_index) index: u32) -> Varyings {
 // A picture with other pixels than the window.
 override IS_STRETCHED: bool = false;
 
-// A texel is read as it is where it is a pixel of the window: samplers cost more than anything else here.
+// Texels are read without a sampler, which costs a software driver more than anything else here.
 fn color_at(uv: vec2<f32>) -> vec4<f32> {
-    if IS_STRETCHED {
-        return textureSample(picture, smooth_sampler, uv);
+    let size = vec2<f32>(textureDimensions(picture));
+    if !IS_STRETCHED {
+        return textureLoad(picture, vec2<i32>(uv * size), 0);
     }
-    return textureLoad(picture, vec2<i32>(uv * vec2<f32>(textureDimensions(picture))), 0);
+    // Between the centres of four texels.
+    let place = clamp(uv * size - 0.5, vec2<f32>(0.0), size - 1.0);
+    let low = vec2<i32>(place);
+    let high = min(low + 1, vec2<i32>(size) - 1);
+    let share = fract(place);
+    let upper = mix(textureLoad(picture, low, 0), textureLoad(picture, vec2<i32>(high.x, low.y), 0), share.x);
+    let lower = mix(textureLoad(picture, vec2<i32>(low.x, high.y), 0), textureLoad(picture, high, 0), share.x);
+    return mix(upper, lower, share.y);
 }
 
 // For targets that hold sRGB values as they are.

@@ -404,9 +404,9 @@ fn lines(record: &MapRecord, lengths: Lengths) -> Vec<String> {
             ("plastic strain", back.plastic_p95, back.plastic_range),
         ] {
             if range > 0.0 {
-                let share = percent(p95 / range);
+                let off = share(p95 / range);
                 lines.push(format!(
-                    "Mapped back onto the stamped part: 95 % differ in {name} by less than {share} of its range"
+                    "Mapped back onto the stamped part: {name} differs by {off} of its range (P95)"
                 ));
             }
         }
