@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 use self::desktop::file_dialog;
 use self::question::{Question, titles};
 use super::background::run_once;
+use super::overlays::modal;
 use super::path_prompt::{self, Completion, plain_words};
 use super::theme::{Palette, UNIT};
 use super::widgets::{caption, large_button, paragraph};
@@ -367,29 +368,41 @@ impl Dialogs {
         self.prompt.is_some() || self.overwrite.is_some()
     }
 
-    /// The fields and questions for desktops without dialogs.
-    pub fn show(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
-        self.overwrite_ui(ctx, commands);
-        self.prompt_ui(ctx, commands);
+    /// The fields and questions for desktops without dialogs. `is_on_processor`: every pixel costs the processor
+    /// time.
+    pub fn show(
+        &mut self,
+        ctx: &egui::Context,
+        is_on_processor: bool,
+        commands: &mut Vec<Command>,
+    ) {
+        self.overwrite_ui(ctx, is_on_processor, commands);
+        self.prompt_ui(ctx, is_on_processor, commands);
     }
 
     /// Asks before a file is replaced.
-    fn overwrite_ui(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
+    fn overwrite_ui(
+        &mut self,
+        ctx: &egui::Context,
+        is_on_processor: bool,
+        commands: &mut Vec<Command>,
+    ) {
         let Some((question, path, file)) = self.overwrite.take() else {
             return;
         };
         let (mut is_taken, mut is_renamed, mut is_closed) = (false, false, false);
-        let shown = modal(ctx, "overwrite question").show(ctx, |ui| {
-            ui.set_width(480.0);
-            ui.spacing_mut().item_spacing.y = UNIT;
-            ui.heading("Replace the existing file?");
-            paragraph(ui, format!("{} already exists.", file.display()));
-            ui.horizontal(|ui| {
-                is_taken = large_button(ui, "Replace", false).clicked();
-                is_renamed = large_button(ui, "Choose another name", true).clicked();
-                is_closed = large_button(ui, "Cancel", false).clicked();
+        let shown =
+            modal(ctx, egui::Id::unique("overwrite question"), is_on_processor).show(ctx, |ui| {
+                ui.set_width(480.0);
+                ui.spacing_mut().item_spacing.y = UNIT;
+                ui.heading("Replace the existing file?");
+                paragraph(ui, format!("{} already exists.", file.display()));
+                ui.horizontal(|ui| {
+                    is_taken = large_button(ui, "Replace", false).clicked();
+                    is_renamed = large_button(ui, "Choose another name", true).clicked();
+                    is_closed = large_button(ui, "Cancel", false).clicked();
+                });
             });
-        });
         if is_taken {
             commands.push(answered(&question, path));
         } else if is_renamed {
@@ -402,12 +415,17 @@ impl Dialogs {
     }
 
     /// The field to type a path into.
-    fn prompt_ui(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
+    fn prompt_ui(
+        &mut self,
+        ctx: &egui::Context,
+        is_on_processor: bool,
+        commands: &mut Vec<Command>,
+    ) {
         let Some(mut prompt) = self.prompt.take() else {
             return;
         };
         let mut answer = None;
-        let shown = modal(ctx, "path prompt").show(ctx, |ui| {
+        let shown = modal(ctx, egui::Id::unique("path prompt"), is_on_processor).show(ctx, |ui| {
             ui.set_width(480.0_f32.min(ctx.content_rect().width() - 80.0));
             ui.spacing_mut().item_spacing.y = UNIT;
             answer = prompt_content(ui, &mut prompt);
@@ -535,14 +553,6 @@ fn answered(question: &Question, path: PathBuf) -> Command {
 /// A path that messages can name whole.
 fn absolute(path: PathBuf) -> PathBuf {
     std::path::absolute(&path).unwrap_or(path)
-}
-
-/// A window over the window, framed like the other dialogs.
-fn modal(ctx: &egui::Context, name: &str) -> egui::Modal {
-    let frame = egui::Frame::popup(&ctx.global_style())
-        .inner_margin(24)
-        .corner_radius(8);
-    egui::Modal::new(egui::Id::unique(name)).frame(frame)
 }
 
 fn formats() -> String {

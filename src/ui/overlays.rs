@@ -33,20 +33,13 @@ pub fn overlays_ui(
     let Some(dialog) = state.view.dialog else {
         return;
     };
-    let frame = egui::Frame::popup(&ctx.global_style())
-        .inner_margin(24)
-        .corner_radius(8);
     let id = egui::Id::unique(("dialog", dialog as u8));
-    let mut modal = Modal::new(id).frame(frame);
+    let mut modal = modal(ctx, id, is_on_processor);
     let window = ctx.content_rect().size();
     if dialog == Dialog::Palette {
         // Its field stays where it is, however many lines are found.
         let top = egui::vec2(0.0, palette::top(window.y));
         modal.area = Modal::default_area(id).anchor(egui::Align2::CENTER_TOP, top);
-    }
-    if is_on_processor {
-        // Darkening the whole window doubles the time of every frame.
-        modal = modal.backdrop_color(egui::Color32::TRANSPARENT);
     }
     let response = modal.show(ctx, |ui| {
         ui.spacing_mut().item_spacing.y = UNIT;
@@ -69,6 +62,20 @@ pub fn overlays_ui(
     let by_pointer = response.backdrop_response.clicked();
     if by_pointer {
         commands.push(ViewCommand::SetDialog(None).into());
+    }
+}
+
+/// A dialog over the window. `is_on_processor`: every pixel costs the processor time.
+pub(super) fn modal(ctx: &egui::Context, id: egui::Id, is_on_processor: bool) -> Modal {
+    let frame = egui::Frame::popup(&ctx.global_style())
+        .inner_margin(24)
+        .corner_radius(8);
+    let modal = Modal::new(id).frame(frame);
+    if is_on_processor {
+        // Darkening the whole window would take several times as long as the rest of the frame.
+        modal.backdrop_color(egui::Color32::TRANSPARENT)
+    } else {
+        modal
     }
 }
 

@@ -517,7 +517,7 @@ impl eframe::App for Shell {
         toasts::toasts_ui(&ctx, &self.state, &mut commands);
         let is_on_processor = self.viewports.is_on_processor();
         overlays::overlays_ui(&ctx, &self.state, is_on_processor, &mut commands);
-        self.dialogs.show(&ctx, &mut commands);
+        self.dialogs.show(&ctx, is_on_processor, &mut commands);
         self.keyboard.collect(&ctx);
         if !commands.is_empty() {
             self.run_commands(commands, &ctx);

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use egui::{Color32, Shape};
 use image::RgbaImage;
+use shapematch::app::Dialog;
 use shapematch::geometry::Camera;
 use shapematch::render::{Drawable, Frame, MeshInput, RenderMesh, Renderer, Scene, ViewTarget};
 
@@ -42,6 +43,12 @@ fn egui_fills_no_large_area_and_the_colours_are_those_of_the_theme() {
         let [x, y] = place;
         assert_eq!(shot.get_pixel(x, y).0, color.to_array(), "{place:?}");
     }
+    window.key_press(egui::Key::F1);
+    window.run_steps(2);
+    assert_eq!(window.state().state().view.dialog, Some(Dialog::Help));
+    assert_eq!(large_fills(&window), [""; 0], "behind a dialog");
+    window.key_press(egui::Key::Escape);
+    window.run_steps(2);
     click(&mut window, "Open the example pair");
     finish(&mut window);
     assert_eq!(large_fills(&window), [""; 0]);

@@ -164,3 +164,41 @@ fn a_dropped_file_answers_the_question_for_a_file_to_read() {
     let is_meant = matches!(command, Command::Map(MapCommand::CompareWith(at)) if at == path);
     assert!(is_meant && !dialogs.is_open());
 }
+
+#[test]
+fn a_question_darkens_the_window_unless_a_processor_draws_it() {
+    let whole = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1000.0, 700.0));
+    for is_on_processor in [false, true] {
+        let question = Question::Save {
+            kind: Output::Log,
+            path: "log.txt".into(),
+            inputs: Vec::new(),
+        };
+        let path = PathBuf::from("/parts/log.txt");
+        let mut dialogs = Dialogs {
+            overwrite: Some((question, path.clone(), path)),
+            ..Dialogs::default()
+        };
+        let ctx = egui::Context::default();
+        let input = || egui::RawInput {
+            screen_rect: Some(whole),
+            ..egui::RawInput::default()
+        };
+        let mut frame = || {
+            let mut output = ctx.run_ui(input(), |ui| {
+                dialogs.show(ui.ctx(), is_on_processor, &mut Vec::new());
+            });
+            output.textures_delta.clear();
+            output
+        };
+        // The first frame measures.
+        frame();
+        let output = frame();
+        let is_dark = output.shapes.iter().any(|clipped| {
+            matches!(&clipped.shape, egui::Shape::Rect(rect)
+                if rect.rect.contains_rect(whole) && rect.fill != egui::Color32::TRANSPARENT)
+        });
+        assert_eq!(is_dark, !is_on_processor);
+        assert!(dialogs.is_open());
+    }
+}
