@@ -10,6 +10,7 @@ use super::map_car::MapCarArgs;
 use super::numbers::{at_least_one, count, positive};
 use super::setting_args::SettingArgs;
 use super::words::{card_forms, units};
+use crate::formats::ReadOptions;
 use crate::report::CardForm;
 use crate::units::Units;
 
@@ -138,6 +139,13 @@ pub struct InputArgs {
     /// Maximum triangles of the stamped part for the search (overrides --triangles).
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = at_least_one)]
     pub stamped_triangles: Option<usize>,
+    #[command(flatten)]
+    pub read: ReadArgs,
+}
+
+/// How the files of a command are read.
+#[derive(Debug, Args)]
+pub struct ReadArgs {
     /// Another folder to search for included files; may be given several times.
     #[arg(long, value_name = "FOLDER")]
     pub include_folder: Vec<PathBuf>,
@@ -145,6 +153,16 @@ pub struct InputArgs {
     /// sets are limited in proportion.
     #[arg(long, value_name = "GIB", allow_negative_numbers = true, default_value_t = 4.0, value_parser = positive)]
     pub read_limit: f64,
+}
+
+impl ReadArgs {
+    /// What the reader is told.
+    pub fn options(&self) -> ReadOptions {
+        ReadOptions {
+            include_folders: self.include_folder.clone(),
+            ..ReadOptions::default().with_limit(self.read_limit)
+        }
+    }
 }
 
 /// Short forms of settings.
@@ -209,9 +227,8 @@ pub struct ReduceArgs {
     /// parts the triangles come from.
     #[arg(long, short, value_name = "FILE")]
     pub out: PathBuf,
-    /// Another folder to search for included files; may be given several times.
-    #[arg(long, value_name = "FOLDER")]
-    pub include_folder: Vec<PathBuf>,
+    #[command(flatten)]
+    pub read: ReadArgs,
     /// Part to reduce, as for match --crash-part.
     #[arg(long, value_name = "PART")]
     pub part: Option<String>,
@@ -228,12 +245,8 @@ pub struct ReduceArgs {
 pub struct InfoArgs {
     /// The file to read.
     pub input: PathBuf,
-    /// Another folder to search for included files; may be given several times.
-    #[arg(long, value_name = "FOLDER")]
-    pub include_folder: Vec<PathBuf>,
-    /// Limit on the file with its includes, unpacked, in GiB.
-    #[arg(long, value_name = "GIB", allow_negative_numbers = true, default_value_t = 4.0, value_parser = positive)]
-    pub read_limit: f64,
+    #[command(flatten)]
+    pub read: ReadArgs,
     /// Write the contents as JSON to a file, or to standard output with "-".
     #[arg(long, value_name = "FILE|-")]
     pub json: Option<PathBuf>,
@@ -320,7 +333,7 @@ pub struct BenchArgs {
     #[arg(long, value_name = "NAMES", requires = "table")]
     pub only: Option<String>,
     /// Write the table with plots as a page.
-    #[arg(long, value_name = "FILE", requires = "page")]
+    #[arg(long, value_name = "FILE|-", requires = "page")]
     pub html: Option<PathBuf>,
 }
 

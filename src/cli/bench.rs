@@ -4,8 +4,13 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use serde::Serialize;
+
 use super::args::BenchArgs;
-use super::{check_outputs, json_target, print, progress, takes_stdout, write_json};
+use super::{
+    check_outputs, json_target, print, progress, takes_stdout, text_target, write_json,
+    write_output,
+};
 use crate::formats::{Disk, FileSource, Memory};
 use crate::geometry::Similarity;
 use crate::monitor::Monitor;
@@ -30,6 +35,33 @@ pub fn run(args: &BenchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     }
     if let Some(path) = &args.json {
         write_json(path, &tables.to_record())?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Refuses files for a table and its page that cannot be written.
+pub(super) fn check_table(args: &BenchArgs) -> anyhow::Result<()> {
+    let json = text_target("--json", args.json.as_deref());
+    let html = text_target("--html", args.html.as_deref());
+    check_outputs(json.into_iter().chain(html), &[])
+}
+
+/// Writes a table where it was asked for, and prints it as `text` unless one of these is standard output.
+pub(super) fn write_table(
+    args: &BenchArgs,
+    text: &str,
+    table: &impl Serialize,
+    page: &str,
+) -> anyhow::Result<ExitCode> {
+    let files = [&args.json, &args.html];
+    if !files.iter().any(|file| takes_stdout(file.as_deref())) {
+        print(text)?;
+    }
+    if let Some(path) = &args.json {
+        write_json(path, table)?;
+    }
+    if let Some(path) = &args.html {
+        write_output(path, page.as_bytes())?;
     }
     Ok(ExitCode::SUCCESS)
 }

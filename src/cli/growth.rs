@@ -4,26 +4,18 @@ use std::fmt::Write as _;
 use std::process::ExitCode;
 
 use super::args::BenchArgs;
-use super::{print, progress, takes_stdout, write_json, write_output};
+use super::bench::{check_table, write_table};
+use super::progress;
 use crate::pipeline::bench::growth::{GrowthTable, growth};
 use crate::pipeline::bench::growth_page::{GROWTH_COLUMNS, growth_page};
 
 /// Measures all sizes and prints the table.
 pub fn run(args: &BenchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
+    check_table(args)?;
     let monitor = progress::monitor(quiet);
     let table = growth(args.largest, &monitor, |_| {})?;
     drop(monitor);
-    let texts = [&args.json, &args.html];
-    if !texts.iter().any(|text| takes_stdout(text.as_deref())) {
-        print(&describe(&table))?;
-    }
-    if let Some(path) = &args.json {
-        write_json(path, &table)?;
-    }
-    if let Some(path) = &args.html {
-        write_output(path, growth_page(&table).as_bytes())?;
-    }
-    Ok(ExitCode::SUCCESS)
+    write_table(args, &describe(&table), &table, &growth_page(&table))
 }
 
 fn describe(table: &GrowthTable) -> String {

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use super::args::InfoArgs;
 use super::{check_outputs, json_target, print, progress, project, takes_stdout, write_json};
-use crate::formats::{self, Diagnostics, ReadOptions};
+use crate::formats::{self, Diagnostics};
 use crate::pipeline::project::is_project;
 use crate::report::{FormingInfo, ModelInfo};
 use crate::text::{counted, length};
@@ -20,14 +20,7 @@ pub fn run(args: &InfoArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         json_target(args.json.as_deref()),
         std::slice::from_ref(&args.input),
     )?;
-    let model = formats::read(
-        &args.input,
-        &ReadOptions {
-            include_folders: args.include_folder.clone(),
-            ..ReadOptions::default().with_limit(args.read_limit)
-        },
-        &progress::monitor(quiet),
-    )?;
+    let model = formats::read(&args.input, &args.read.options(), &progress::monitor(quiet))?;
     let files: Vec<PathBuf> = model.files.iter().map(|file| file.path.clone()).collect();
     check_outputs(json_target(args.json.as_deref()), &files)?;
     let info = ModelInfo::of(&model);

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use clap::builder::BoolishValueParser;
 use clap::{ArgAction, Args};
 
+use super::args::ReadArgs;
 use super::map_choices::{
     HandName, KindName, MirrorName, RuleName, default_thickness, law, quantities,
 };
@@ -20,7 +21,6 @@ use super::{
     write_json, write_output,
 };
 use crate::assess::Verdict;
-use crate::formats::ReadOptions;
 use crate::mapping::{MapOptions, Quantities, RuleKind};
 use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
@@ -77,9 +77,8 @@ pub(super) struct MapChoice {
     /// History variables go to parts of the same law alone.
     #[arg(long, value_name = "LAW", value_parser = law)]
     stamped_material: Option<String>,
-    /// Another folder to search for included files; may be given several times.
-    #[arg(long, value_name = "FOLDER")]
-    include_folder: Vec<PathBuf>,
+    #[command(flatten)]
+    read: ReadArgs,
     /// Pose of a stamped part (crash from stamped): a text file, or the numbers themselves, 16 by rows.
     /// Give one for each stamped file. Without it the parts are matched first.
     #[arg(long, value_name = "FILE|NUMBERS", allow_hyphen_values = true)]
@@ -517,10 +516,7 @@ fn load_all(args: &MapArgs, monitor: &Monitor) -> anyhow::Result<(LoadedPart, Ve
     let settings = |role, part: Option<&str>, length_factor: f64| LoadSettings {
         selection: selection(role, part),
         length_factor,
-        read: ReadOptions {
-            include_folders: choice.include_folder.clone(),
-            ..ReadOptions::default()
-        },
+        read: choice.read.options(),
         ..LoadSettings::default()
     };
     let crash = load(

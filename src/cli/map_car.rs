@@ -7,6 +7,7 @@ use anyhow::Context as _;
 use clap::builder::BoolishValueParser;
 use clap::{ArgAction, Args};
 
+use super::args::ReadArgs;
 use super::map::MapValues;
 use super::map_choices::{HandName, default_thickness};
 use super::of_each::{LengthFactors, StressFactors, of_file};
@@ -14,7 +15,6 @@ use super::{
     NamedFiles, UsageError, check_outputs, is_stdout, json_target, print, progress, takes_stdout,
     write_json,
 };
-use crate::formats::ReadOptions;
 use crate::pipeline::load::{LoadSettings, load, usual_selection};
 use crate::pipeline::map::DefaultThickness;
 use crate::pipeline::map_car::{
@@ -50,9 +50,8 @@ pub struct MapCarArgs {
     lengths: LengthFactors,
     #[command(flatten)]
     stresses: StressFactors,
-    /// Another folder to search for included files; may be given several times.
-    #[arg(long, value_name = "FOLDER")]
-    include_folder: Vec<PathBuf>,
+    #[command(flatten)]
+    read: ReadArgs,
     /// 16 columns a number instead of 10.
     #[arg(long, value_name = "YES|NO", default_value = "yes", action = ArgAction::Set, hide_possible_values = true, value_parser = BoolishValueParser::new())]
     large: bool,
@@ -87,10 +86,7 @@ fn map_all(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     args.lengths.check(args.stamped.len())?;
     let stress_factors = args.stresses.checked(args.stamped.len())?;
     let monitor = progress::monitor(quiet);
-    let read = ReadOptions {
-        include_folders: args.include_folder.clone(),
-        ..ReadOptions::default()
-    };
+    let read = args.read.options();
     let settings = |role, length_factor| LoadSettings {
         selection: usual_selection(role),
         length_factor,

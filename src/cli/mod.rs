@@ -119,9 +119,14 @@ fn write_output(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
 
 /// What `--json` writes, for the check before the work.
 fn json_target(json: Option<&Path>) -> Option<Target> {
+    text_target("--json", json)
+}
+
+/// What an option writes as text, for the check before the work.
+fn text_target(option: &str, path: Option<&Path>) -> Option<Target> {
     Some(Target {
-        name: "--json".to_owned(),
-        path: json?.to_path_buf(),
+        name: option.to_owned(),
+        path: path?.to_path_buf(),
         content: Content::Text,
     })
 }

@@ -7,7 +7,7 @@ use anyhow::Context as _;
 use super::UsageError;
 use super::args::{InputArgs, MatchArgs};
 use super::setting_args::SettingArgs;
-use crate::formats::{ReadOptions, Selection};
+use crate::formats::Selection;
 use crate::geometry::Similarity;
 use crate::pipeline::load::{LoadSettings, parse_selection, usual_selection};
 use crate::registration::{Hand, MatchSettings, Method, Motion, StartMethod};
@@ -168,10 +168,7 @@ fn load_settings(input: &InputArgs, role: Role) -> LoadSettings {
         selection: selection(role, part.as_deref()),
         length_factor,
         units,
-        read: ReadOptions {
-            include_folders: input.include_folder.clone(),
-            ..ReadOptions::default().with_limit(input.read_limit)
-        },
+        read: input.read.options(),
         ..LoadSettings::default()
     }
 }
@@ -180,7 +177,7 @@ fn load_settings(input: &InputArgs, role: Role) -> LoadSettings {
 mod tests {
     use super::super::args::{Cli, Task};
     use super::*;
-    use crate::formats;
+    use crate::formats::{self, ReadOptions};
     use crate::geometry::{Pose, Vector3};
     use crate::registration::{DataSide, Floor, Metric, PairWith, Search, Selection};
     use crate::report::command_line::{CommandLine, CommandSide};

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::args::ReduceArgs;
 use super::{check_outputs, json_target, print, progress, takes_stdout, write_json, write_output};
-use crate::formats::{Format, ReadOptions};
+use crate::formats::Format;
 use crate::geometry::Similarity;
 use crate::pipeline::load::{LoadSettings, load, parse_selection};
 use crate::pipeline::outputs::deck::{format_of, reduced_bytes, reduced_lacks};
@@ -47,10 +47,7 @@ pub fn run(args: &ReduceArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         &args.input,
         &LoadSettings {
             selection,
-            read: ReadOptions {
-                include_folders: args.include_folder.clone(),
-                ..ReadOptions::default()
-            },
+            read: args.read.options(),
             ..LoadSettings::default()
         },
         &monitor,

@@ -6,7 +6,8 @@ use std::process::ExitCode;
 use anyhow::bail;
 
 use super::args::BenchArgs;
-use super::{print, progress, takes_stdout, write_json, write_output};
+use super::bench::{check_table, write_table};
+use super::progress;
 use crate::pipeline::bench::robustness::{RobustnessSettings, robustness};
 use crate::pipeline::bench::robustness_page::page;
 use crate::pipeline::bench::robustness_table::{COLUMNS, RobustnessTable, notes};
@@ -15,22 +16,13 @@ use crate::samples::scenario::Scenario;
 
 /// Runs the pairs and prints the table.
 pub fn run(args: &BenchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
+    check_table(args)?;
     let settings = settings(args)?;
     let monitor = progress::monitor(quiet);
     let runs = robustness(&settings, &monitor, |_| {})?;
     drop(monitor);
     let table = RobustnessTable::new(settings.seed, &runs);
-    let texts = [&args.json, &args.html];
-    if !texts.iter().any(|text| takes_stdout(text.as_deref())) {
-        print(&describe(&table))?;
-    }
-    if let Some(path) = &args.json {
-        write_json(path, &table)?;
-    }
-    if let Some(path) = &args.html {
-        write_output(path, page(&table, &runs).as_bytes())?;
-    }
-    Ok(ExitCode::SUCCESS)
+    write_table(args, &describe(&table), &table, &page(&table, &runs))
 }
 
 fn settings(args: &BenchArgs) -> anyhow::Result<RobustnessSettings> {

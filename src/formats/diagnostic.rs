@@ -136,8 +136,6 @@ kinds! {
     OffMidSurface, Warning, "nodes off the mid-surface";
     /// An element names a part that no file defines.
     UndefinedPart, Note, "undefined part";
-    /// A part names a section that no file defines.
-    UndefinedSection, Note, "undefined section";
     /// An included file cannot be found or read.
     MissingInclude, Error, "missing include";
     /// A file includes itself, directly or through others.

@@ -543,6 +543,44 @@ fn wrong_usage_and_missing_files_have_their_own_status() {
 }
 
 #[test]
+fn tables_that_cannot_be_written_are_refused_before_they_are_measured() {
+    for table in ["--growth", "--robustness"] {
+        for (outputs, reason) in [
+            (["--json", "-", "--html", "-"], "standard output"),
+            (
+                ["--json", "-", "--html", "no-such-folder/page.html"],
+                "no-such-folder",
+            ),
+        ] {
+            let refused = shapematch(&[&["bench", table], &outputs[..]].concat());
+            assert_eq!(refused.status.code(), Some(2), "{table}");
+            assert!(refused.stdout.is_empty(), "nothing was measured");
+            let message = text(&refused.stderr);
+            assert!(message.contains(reason), "{message}");
+        }
+    }
+}
+
+#[test]
+fn every_command_that_reads_parts_takes_the_limit_of_reading() {
+    let pair = Pair::bundled();
+    let (crash, stamped) = (pair.path("crash.k.gz"), pair.path("stamped.dynain.gz"));
+    let [mesh, deck, folder] = ["mesh.stl", "deck.k", "car"].map(|name| pair.path(name));
+    for words in [
+        &["info", &crash][..],
+        &["reduce", &crash, "--triangles", "500", "--out", &mesh],
+        &["match", &crash, &stamped],
+        &["map", &crash, &stamped, "--out", &deck],
+        &["map-car", &crash, &stamped, "--out", &folder],
+    ] {
+        let refused = shapematch(&[words, &["--read-limit", "0.00001"]].concat());
+        assert_eq!(refused.status.code(), Some(1), "{words:?}");
+        let message = text(&refused.stderr);
+        assert!(message.contains("raise it with --read-limit"), "{message}");
+    }
+}
+
+#[test]
 fn values_that_cannot_be_say_what_they_must_be() {
     for (line, told) in [
         (

@@ -53,6 +53,36 @@ fn an_encrypted_block_without_its_end_is_an_error() {
 }
 
 #[test]
+fn text_that_looks_like_a_keyword_is_no_fault() {
+    for text in [
+        "*COMMENT\nreplaced:\n  *INCLUDE of before\n",
+        "*TITLE\n *NODE of a door\n",
+    ] {
+        let model = read_text(format!("{text}{NODES}{PART}{SHELL}*END\n"));
+        assert_eq!(all(&model), Vec::<String>::new(), "{text:?}");
+    }
+}
+
+#[test]
+fn the_width_of_fields_is_found_behind_other_options() {
+    let wide = |values: [&str; 4]| values.map(|value| format!("{value:>20}")).concat() + "\n";
+    let mut deck = String::from("*KEYWORD JOBID=LONGRUN_I10 LONG=Y\n*NODE\n");
+    for (id, x, y) in [("1", "0.", "0."), ("2", "1.", "0."), ("3", "1.", "1.")] {
+        deck += &wide([id, x, y, "0."]);
+    }
+    let model = read_text(deck + "*ELEMENT_SHELL\n1,1,1,2,3,3\n*END\n");
+    assert_eq!((model.nodes.len(), model.shells.len()), (3, 1));
+}
+
+#[test]
+fn line_ends_that_were_converted_twice_are_line_ends() {
+    let deck = format!("{NODES}{PART}{SHELL}*END\n").replace('\n', "\r\r\n");
+    let model = read_text(deck);
+    assert_eq!(all(&model), Vec::<String>::new());
+    assert_eq!((model.nodes.len(), model.shells.len()), (4, 1));
+}
+
+#[test]
 fn keywords_behind_the_end_are_told() {
     let of = |behind: &str| read_text(format!("{NODES}{PART}{SHELL}*END\n{behind}"));
     let model = of("\n*SECTION_SHELL\n1\n1,1,1,1\n*END\n*TITLE\nlost\n");

@@ -201,7 +201,9 @@ pub(crate) fn next_line(bytes: &[u8], start: usize, end: usize) -> Option<(&[u8]
         None => (start + end_of_file_mark(&bytes[start..end]), end),
     };
     let line = &bytes[start..stop];
-    Some((line.strip_suffix(b"\r").unwrap_or(line), start, next))
+    // Line ends that were converted twice have two of them.
+    let n_returns = line.iter().rev().take_while(|&&byte| byte == b'\r').count();
+    Some((&line[..line.len() - n_returns], start, next))
 }
 
 /// Length of the text up to and with the line that ends an encrypted part.

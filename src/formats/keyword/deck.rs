@@ -243,7 +243,9 @@ impl Reader<'_> {
             parameters: Some(&self.parameters),
             ..block.clone()
         };
-        if let Some(card) = block.misplaced_keyword() {
+        // Text begins as it likes.
+        let is_text = matches!(name, "COMMENT" | "TITLE");
+        if let Some(card) = block.misplaced_keyword().filter(|_| !is_text) {
             let kind = DiagnosticKind::MisplacedKeyword;
             assembly.found.push_with(kind, || card.diagnose_keyword());
         }

@@ -12,6 +12,7 @@ use super::super::model::{Forming, StrainPoint, StressPoint};
 use super::block::{Block, Cards, next_line};
 use super::card::{Card, EIGHT_BY_10, FIVE_BY_16, FieldError};
 use super::nodes::shifted;
+use super::resolve::with_position;
 use super::source_file::{Place, SourceFile};
 use crate::geometry::tensor::Tensor;
 
@@ -120,6 +121,7 @@ pub(crate) fn read_block(
         into.shell_strain_places
             .resize_with(into.of_shells.n_strain(), place);
         if let Err(Stop) = read {
+            reader.tell_rest();
             return;
         }
     }
@@ -194,10 +196,23 @@ struct Reader<'a, 'd> {
     diagnostics: &'d mut Diagnostics,
     /// Values of the element at hand.
     values: Vec<f64>,
+    /// The first card of the element at hand.
+    head: Option<Card<'a>>,
     /// The first unreadable field of the element at hand.
     bad_field: Option<FieldError>,
     /// Where the line after the last card begins.
     after: usize,
+}
+
+/// True for what the first card of an element looks like: whole numbers, an id first.
+fn is_head(card: &Card<'_>) -> bool {
+    let is_whole = |i: usize| {
+        let text = card.field(EIGHT_BY_10, i).text;
+        let digits = text.strip_prefix(b"-").unwrap_or(text);
+        digits.iter().all(u8::is_ascii_digit)
+    };
+    let n_fields = card.n_fields(EIGHT_BY_10[0]).min(EIGHT_BY_10.len());
+    (0..n_fields).all(is_whole) && card.id(EIGHT_BY_10, 0).is_ok_and(|id| id > 0)
 }
 
 /// How the lines of one kind of data are cut.
@@ -228,6 +243,7 @@ impl<'a, 'd> Reader<'a, 'd> {
             units,
             diagnostics,
             values: Vec::new(),
+            head: None,
             bad_field: None,
             after: block.body.start,
         }
@@ -240,7 +256,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         Some(card)
     }
 
-    fn stress(&mut self, head: &Card<'_>, offset: i64, into: &mut Forming) -> Result<(), Stop> {
+    fn stress(&mut self, head: &Card<'a>, offset: i64, into: &mut Forming) -> Result<(), Stop> {
         let [
             id,
             n_plane,
@@ -315,7 +331,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         Ok(())
     }
 
-    fn strain(&mut self, head: &Card<'_>, offset: i64, into: &mut Forming) -> Result<(), Stop> {
+    fn strain(&mut self, head: &Card<'a>, offset: i64, into: &mut Forming) -> Result<(), Stop> {
         let [id, n_plane, n_thick, large, _, _, _, is_local] = self.header(head)?;
         let [n_plane, n_thick] = self.counts(head, [n_plane, n_thick])?;
         let lines = if large == 0 { SMALL } else { LARGE };
@@ -366,7 +382,7 @@ impl<'a, 'd> Reader<'a, 'd> {
 
     /// `EID NINT NHISV LARGE IVEFLG IALEGP NTHINT NTHHSV`. The initial volume that `IVEFLG` asks
     /// for is one of the history variables. Large data run on over the lines of a point.
-    fn solid_stress(&mut self, head: &Card<'_>, counter: &mut usize) -> Result<(), Stop> {
+    fn solid_stress(&mut self, head: &Card<'a>, counter: &mut usize) -> Result<(), Stop> {
         let [
             id,
             n_points,
@@ -393,7 +409,7 @@ impl<'a, 'd> Reader<'a, 'd> {
     }
 
     /// `EID NPLANE NTHICK NHISV LARGE`, then points as those of a shell.
-    fn thick_shell_stress(&mut self, head: &Card<'_>, counter: &mut usize) -> Result<(), Stop> {
+    fn thick_shell_stress(&mut self, head: &Card<'a>, counter: &mut usize) -> Result<(), Stop> {
         let [id, n_plane, n_thick, n_history, large, ..] = self.header(head)?;
         let [n_plane, n_thick, n_history] = self.counts(head, [n_plane, n_thick, n_history])?;
         let lines = if large == 0 { SMALL } else { LARGE };
@@ -406,7 +422,7 @@ impl<'a, 'd> Reader<'a, 'd> {
     }
 
     /// `EID` and lines of one tensor each.
-    fn tensors(&mut self, head: &Card<'_>, n: usize, counter: &mut usize) -> Result<(), Stop> {
+    fn tensors(&mut self, head: &Card<'a>, n: usize, counter: &mut usize) -> Result<(), Stop> {
         let [id, ..] = self.header(head)?;
         for _ in 0..n {
             self.take(6, SMALL_TENSOR)?;
@@ -428,7 +444,20 @@ impl<'a, 'd> Reader<'a, 'd> {
         *counter += usize::from(is_good);
     }
 
-    fn header(&mut self, card: &Card<'_>) -> Result<[i64; 8], Stop> {
+    /// Where an element's results end is not known without its first card, so that the block ends there.
+    fn tell_rest(&mut self) {
+        let Some(card) = self.next_card() else {
+            return;
+        };
+        let kind = DiagnosticKind::BadForming;
+        self.diagnostics.push_with(kind, || {
+            let message = "the results from here to the end of the block are left out";
+            Diagnostic::new(kind, message).at(card.position(0))
+        });
+    }
+
+    fn header(&mut self, card: &Card<'a>) -> Result<[i64; 8], Stop> {
+        self.head = Some(card.clone());
         let mut fields = [0; 8];
         for (i, field) in fields.iter_mut().enumerate() {
             match card.int_or_zero(EIGHT_BY_10, i) {
@@ -493,9 +522,11 @@ impl<'a, 'd> Reader<'a, 'd> {
             let expected = lines.per_line.min(n - self.values.len());
             let Some(card) = self.next_card() else {
                 let kind = DiagnosticKind::MissingCard;
-                let message = "the results of the last element are cut off";
-                self.diagnostics
-                    .push_with(kind, || self.block.diagnose(kind, message));
+                let message = "the results of the element that begins here are cut off";
+                let head = self.head.as_ref().map(|head| head.position(0));
+                self.diagnostics.push_with(kind, || {
+                    with_position(self.block.diagnose(kind, message), head)
+                });
                 return Err(Stop);
             };
             let found = self.append(&card, expected, lines);
@@ -503,7 +534,8 @@ impl<'a, 'd> Reader<'a, 'd> {
             let width = lines.widths[0];
             let rest_follows = self.values.len() < n_needed
                 && missing > 0
-                && (self.cards.peek()).is_some_and(|next| next.n_fields(width) == missing);
+                && (self.cards.peek())
+                    .is_some_and(|next| next.n_fields(width) == missing && !is_head(next));
             if rest_follows {
                 let next = self.next_card().expect("it was seen just before");
                 self.append(&next, missing, lines);

@@ -413,9 +413,13 @@ pub(crate) fn layout_of_keyword(block: &Block<'_>) -> Option<Layout> {
     }
     let text = String::from_utf8_lossy(block.remark).to_ascii_uppercase();
     let value_of = |option: &str| {
-        let at = text.find(option)?;
-        let rest = text[at + option.len()..].trim_start().strip_prefix('=')?;
-        rest.trim_start().chars().next()
+        // Job names, too, may hold these letters.
+        text.match_indices(option).find_map(|(at, _)| {
+            let is_word =
+                !text[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == '=');
+            let rest = text[at + option.len()..].trim_start().strip_prefix('=')?;
+            rest.trim_start().chars().next().filter(|_| is_word)
+        })
     };
     match (value_of("LONG"), value_of("I10")) {
         // `LONG=S` asks for standard input and a long structured file.

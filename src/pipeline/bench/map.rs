@@ -101,6 +101,8 @@ pub struct SpeedRow {
 /// Tables of `bench --mapping`.
 #[derive(Debug, Clone, Serialize)]
 pub struct MapBench {
+    /// What the record is.
+    pub schema: &'static str,
     /// Errors, three rows for each pair.
     pub errors: Vec<ErrorRow>,
     /// Time, rate and memory at full size, if they were asked for.
@@ -139,6 +141,7 @@ pub fn map_bench(only: Option<&str>, monitor: &Monitor) -> Result<MapBench, Pipe
     }
     monitor.progress("map pairs", n_rows - 1, Some(n_rows));
     Ok(MapBench {
+        schema: "shapematch.map-bench/1",
         errors,
         speed: is_wanted(SPEED).then(|| speed(monitor)).transpose()?,
     })

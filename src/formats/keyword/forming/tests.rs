@@ -136,6 +136,50 @@ fn plastic_strain_on_a_line_of_its_own() {
 }
 
 #[test]
+fn the_first_card_of_the_next_element_is_no_rest_of_a_short_line() {
+    let mut deck = String::from("*INITIAL_STRESS_SHELL\n");
+    for id in [100, 101] {
+        deck += &(ints(10, &[id, 1, 1]) + &row(10, &POINT[..5]));
+    }
+    let free = "*INITIAL_STRESS_SHELL\n100,1,1\n-.5,1.,2.,3.,4.\n101,1,1\n-.5,1.,2.,3.,4.\n";
+    for deck in [deck.as_str(), free] {
+        let forming = clean(deck);
+        assert_eq!(forming.n_stress(), 2, "{deck}");
+        for shell in forming.stresses() {
+            assert_eq!(shell.points[0].stress, [1.0, 2.0, 3.0, 4.0, 0.0, 0.0]);
+            assert_eq!(shell.points[0].plastic_strain, 0.0);
+        }
+    }
+    let mut deck = String::from("*INITIAL_STRAIN_SHELL\n");
+    for id in [100, 101] {
+        deck += &(ints(10, &[id, 1, 1]) + &row(10, &[1.0, 2.0, 3.0, 4.0]));
+    }
+    assert_eq!(clean(&deck).n_strain(), 2);
+}
+
+#[test]
+fn what_is_left_out_behind_a_bad_card_is_told_with_its_line() {
+    let good = |id| ints(10, &[id, 1, 1]) + &row(10, &POINT);
+    let deck = String::from("*INITIAL_STRESS_SHELL\n") + &good(100) + &ints(10, &[101, 1, -1]);
+    let (forming, found) = read(&(deck + &row(10, &POINT) + &good(102)));
+    check(&forming, 1, 1, 0);
+    let lines = |found: &Diagnostics| -> Vec<u64> {
+        let positions = found.iter().map(|d| d.position.as_ref());
+        positions
+            .map(|position| position.map_or(0, |p| p.line))
+            .collect()
+    };
+    assert_eq!(lines(&found), [4, 5]);
+    let last = found.iter().last().map(|d| d.message.clone());
+    assert!(last.is_some_and(|text| text.contains("to the end of the block are left out")));
+    // The end of the file within the second element.
+    let deck = String::from("*INITIAL_STRESS_SHELL\n") + &good(100) + &ints(10, &[101, 1, 2]);
+    let (forming, found) = read(&(deck + &row(10, &POINT)));
+    check(&forming, 1, 1, 0);
+    assert_eq!(lines(&found), [4]);
+}
+
+#[test]
 fn free_format_and_missing_fields() {
     let deck = "*INITIAL_STRESS_SHELL\n100,1,1\n-.5,1.,2.,3.,4.,5.,6.,.25\n101,1,1\n-.5,1.\n";
     let forming = clean(deck);
