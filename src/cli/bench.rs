@@ -41,7 +41,7 @@ pub fn run(args: &BenchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
 
 /// Refuses files for a table and its page that cannot be written.
 pub(super) fn check_table(args: &BenchArgs) -> anyhow::Result<()> {
-    let json = text_target("--json", args.json.as_deref());
+    let json = json_target(args.json.as_deref());
     let html = text_target("--html", args.html.as_deref());
     check_outputs(json.into_iter().chain(html), &[])
 }

@@ -1,7 +1,7 @@
 //! The cool–warm map of Moreland (2009), "Diverging color maps for scientific visualization": straight
 //! lines in Msh space, the polar form of CIELAB, from either end to an unsaturated middle.
 
-use super::Rgb;
+use super::{Rgb, linear_of_srgb};
 
 /// White point D65, which sRGB refers to.
 const WHITE: [f64; 3] = [0.95047, 1.0, 1.08883];
@@ -42,7 +42,7 @@ fn hue_of_the_middle([magnitude, saturation, hue]: [f64; 3]) -> f64 {
 }
 
 fn msh_from_rgb(color: Rgb) -> [f64; 3] {
-    let [r, g, b] = color.map(|byte| decode(f64::from(byte) / 255.0));
+    let [r, g, b] = color.map(|byte| linear_of_srgb(f64::from(byte) / 255.0));
     let xyz = [
         0.4124 * r + 0.3576 * g + 0.1805 * b,
         0.2126 * r + 0.7152 * g + 0.0722 * b,
@@ -86,14 +86,6 @@ fn rgb_from_msh([magnitude, saturation, hue]: [f64; 3]) -> Rgb {
         0.0557 * x - 0.2040 * y + 1.0570 * z,
     ];
     linear.map(|c| (encode(c.clamp(0.0, 1.0)) * 255.0).round() as u8)
-}
-
-fn decode(c: f64) -> f64 {
-    if c <= 0.04045 {
-        c / 12.92
-    } else {
-        ((c + 0.055) / 1.055).powf(2.4)
-    }
 }
 
 fn encode(c: f64) -> f64 {

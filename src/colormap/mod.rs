@@ -97,6 +97,15 @@ fn between_stops(stops: &[Rgb], t: f64) -> Rgb {
     })
 }
 
+/// The linear value of an sRGB value (IEC 61966-2-1), both 0 to 1.
+pub(crate) fn linear_of_srgb(value: f64) -> f64 {
+    if value <= 0.04045 {
+        value / 12.92
+    } else {
+        ((value + 0.055) / 1.055).powf(2.4)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -19,8 +19,8 @@ const SETTLED: Duration = Duration::from_millis(120);
 const UPLOAD: Duration = Duration::from_millis(30);
 /// A picture of looks that are older than this gives way to a coarse one.
 const STALE: Duration = Duration::from_millis(400);
-/// Things (triangles, lines, nodes) drawn in the first slice, and the fewest in one: on a processor they take about
-/// as long as the rest of the frame. With fewer, the frames between the slices would take most of the time.
+/// Things (triangles, lines, nodes) drawn in the first slice, and the fewest in one. With fewer, a processor would
+/// spend most of the time on the rest of each frame.
 const FEWEST: u64 = 20_000;
 const MOST: u64 = 1 << 32;
 /// Slices further apart than this become smaller, closer ones larger.

@@ -1,5 +1,6 @@
 //! One colour over a whole area of the window.
 
+use crate::colormap::linear_of_srgb;
 use crate::render::pipeline::{Depth, PipelineSpec};
 use crate::render::scene::Rgba;
 
@@ -45,19 +46,14 @@ impl Fill {
     pub(in crate::render) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, [r, g, b, _]: Rgba) {
         let [r, g, b] = [r, g, b].map(|value| {
             let value = f64::from(value) / 255.0;
-            if self.is_linear { linear(value) } else { value }
+            if self.is_linear {
+                linear_of_srgb(value)
+            } else {
+                value
+            }
         });
         pass.set_pipeline(&self.pipeline);
         pass.set_blend_constant(wgpu::Color { r, g, b, a: 1.0 });
         pass.draw(0..3, 0..1);
-    }
-}
-
-/// The linear value of an sRGB value (IEC 61966-2-1), both 0 to 1.
-fn linear(value: f64) -> f64 {
-    if value <= 0.04045 {
-        value / 12.92
-    } else {
-        ((value + 0.055) / 1.055).powf(2.4)
     }
 }
