@@ -53,6 +53,14 @@ pub fn whole_percent(fraction: f64) -> String {
 /// What sums lose of all in rounding.
 const ALMOST_ALL: f64 = 1.0 - 1e-9;
 
+/// A fraction beside the limit it is held against, with as many decimals as it takes to tell them apart.
+pub fn compared_percents(fractions: [f64; 2]) -> [String; 2] {
+    (1..=MOST_DECIMALS)
+        .map(|decimals| fractions.map(|fraction| in_percent(fraction, decimals)))
+        .find(|words| words[0] != words[1])
+        .unwrap_or_else(|| fractions.map(percent))
+}
+
 fn in_percent(fraction: f64, decimals: usize) -> String {
     let most = 100.0 - 0.1_f64.powi(decimals as i32);
     let shown = if fraction < ALMOST_ALL {
@@ -250,8 +258,12 @@ impl Lengths {
 
     /// The coordinates of a place, to a tenth of a millimetre or finer: `(1.0, 0.0, −2.5)`.
     pub fn place(self, coordinates: [f64; 3]) -> String {
-        let finer = self.unit.map_or(0, decimals_beyond_mm);
-        vector(coordinates, 1 + finer)
+        vector(coordinates, self.decimals_as_of_mm(1))
+    }
+
+    /// The decimals that tell as much as so many of a millimetre.
+    pub fn decimals_as_of_mm(self, decimals: usize) -> usize {
+        decimals + self.unit.map_or(0, decimals_beyond_mm)
     }
 
     /// The number with its sign: `+0.381`, `−1.35`.

@@ -44,7 +44,8 @@ impl AppState {
             JobStage::Finished(output) => {
                 // What was said of its last try is solved.
                 self.log.notices.withdraw_job(event.key);
-                self.take_output(output, &event.key, event.stamp, event.elapsed)
+                let took = (event.elapsed, was_stopped);
+                self.take_output(output, event.stamp, took)
             }
         }
     }
@@ -87,17 +88,14 @@ impl AppState {
     fn take_output(
         &mut self,
         output: JobOutput,
-        key: &JobKey,
         stamp: Stamp,
-        took: Duration,
+        (took, was_stopped): (Duration, bool),
     ) -> Vec<Effect> {
         let (mut work, topics) = self.split();
         let work = &mut work;
         match output {
             JobOutput::ProjectOpened(opened) => return self.take_project(*opened, took),
-            JobOutput::Loaded {
-                role, part, facts, ..
-            } if matches!(key, JobKey::Reselect(_)) => {
+            JobOutput::Reselected { role, part, facts } => {
                 let new = NewPart {
                     role,
                     part,
@@ -165,7 +163,9 @@ impl AppState {
             JobOutput::Overlapped { of, overlap, limit } => {
                 topics.moving.take_overlap(of, overlap, limit, stamp);
             }
-            JobOutput::Swept(table) => topics.matching.take_swept(work, table, took),
+            JobOutput::Swept(table) => {
+                topics.matching.take_swept(work, table, (took, was_stopped));
+            }
             JobOutput::Exported(exported) => return work.take_exported(exported, took),
         }
         Vec::new()

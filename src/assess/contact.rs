@@ -175,6 +175,18 @@ impl<'a> ContactSearch<'a> {
         list.collect()
     }
 
+    /// Where nodes of one part, the source or the target, meet the other under a pose. O(nodes · log triangles).
+    pub(super) fn of_nodes(
+        &self,
+        pose: &Similarity,
+        of_source: bool,
+        nodes: &[u32],
+    ) -> Vec<Contact> {
+        let sides = Sides::new([self.source, self.target], pose, of_source);
+        let met = |&node: &u32| sides.contact(node as usize, self.reach, None, &mut None);
+        nodes.par_iter().filter_map(met).collect()
+    }
+
     /// Share of the smaller part's area that lies beyond the borders of the other part under a pose: its closest
     /// place there is a border that lies off its reach or beside it. O(nodes · log triangles).
     pub(crate) fn overhang(&self, pose: &Similarity) -> f64 {

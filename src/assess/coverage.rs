@@ -83,13 +83,44 @@ pub fn coverage(
     limit: f64,
     monitor: &Monitor,
 ) -> Result<Coverage, Cancelled> {
+    let (coverage, _) = coverage_and_far(
+        [source, target],
+        target_from_source,
+        limit,
+        NOWHERE,
+        monitor,
+    )?;
+    Ok(coverage)
+}
+
+/// Nodes of source and target that lie within a range of distances from the other part.
+pub(super) type FarNodes = [Vec<u32>; 2];
+
+/// No distance lies there.
+const NOWHERE: [f64; 2] = [f64::INFINITY; 2];
+
+/// [`coverage`] with the nodes that lie farther apart than the first and no farther than the second of two distances, in
+/// target length units.
+pub(super) fn coverage_and_far(
+    [source, target]: [&Surface; 2],
+    target_from_source: &Similarity,
+    limit: f64,
+    far: [f64; 2],
+    monitor: &Monitor,
+) -> Result<(Coverage, FarNodes), Cancelled> {
     let back = target_from_source.inverse();
     let scale = target_from_source.scale;
-    Ok(Coverage {
-        source_on_target: one_sided([source, target], target_from_source, limit, 1.0, monitor)?,
-        target_on_source: one_sided([target, source], &back, limit, scale, monitor)?,
+    let of_source = measured([source, target], (target_from_source, 1.0), monitor)?;
+    let of_target = measured([target, source], (&back, scale), monitor)?;
+    let far_nodes = [&of_source, &of_target].map(|nodes| far_of(nodes, far));
+    let [source_on_target, target_on_source] =
+        [of_source, of_target].map(|nodes| one_sided(nodes, limit));
+    let coverage = Coverage {
+        source_on_target,
+        target_on_source,
         limit,
-    })
+    };
+    Ok((coverage, far_nodes))
 }
 
 /// Overlap of both directions, source first, from at most `n_points` nodes of each mesh: for a number that
@@ -128,14 +159,15 @@ const RUN: usize = 256;
 /// Nodes of one mesh that are measured; more change no share by a thousandth.
 const MOST_NODES: usize = 250_000;
 
+/// A node, its distance from the other part in target lengths, and its area.
+type Measured = (u32, f64, f64);
+
 /// `unit` turns distances measured in the model's frame into target lengths.
-fn one_sided(
+fn measured(
     [data, model]: [&Surface; 2],
-    model_from_data: &Similarity,
-    limit: f64,
-    unit: f64,
+    (model_from_data, unit): (&Similarity, f64),
     monitor: &Monitor,
-) -> Result<OneSided, Cancelled> {
+) -> Result<Vec<Measured>, Cancelled> {
     let positions = data.mesh().positions();
     let step = positions.len().div_ceil(MOST_NODES).max(1);
     let nodes: Vec<usize> = (0..positions.len()).step_by(step).collect();
@@ -146,36 +178,49 @@ fn one_sided(
             let hit = model.bvh().closest(&moved, f64::INFINITY, near, None);
             near = hit.map(|hit| hit.triangle);
             let distance = hit.map_or(f64::INFINITY, |hit| hit.distance_sq.sqrt() * unit);
-            (distance, data.vertex_areas()[node])
+            (node as u32, distance, data.vertex_areas()[node])
         };
         run.iter().map(distance).collect::<Vec<_>>()
     };
-    let mut measured: Vec<(f64, f64)> = Vec::with_capacity(nodes.len());
+    let mut measured: Vec<Measured> = Vec::with_capacity(nodes.len());
     for chunk in nodes.chunks(CHUNK) {
         monitor.check()?;
         let found: Vec<_> = chunk.par_chunks(RUN).map(distances).collect();
         measured.extend(found.into_iter().flatten());
     }
-    measured.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let total: f64 = measured.iter().map(|(_, area)| area).sum();
-    let n_within = measured.partition_point(|(distance, _)| *distance <= limit);
+    Ok(measured)
+}
+
+fn far_of(nodes: &[Measured], [from, to]: [f64; 2]) -> Vec<u32> {
+    let is_far = |(_, distance, _): &&Measured| *distance > from && *distance <= to;
+    nodes
+        .iter()
+        .filter(is_far)
+        .map(|(node, ..)| *node)
+        .collect()
+}
+
+fn one_sided(mut measured: Vec<Measured>, limit: f64) -> OneSided {
+    measured.par_sort_unstable_by(|a, b| a.1.total_cmp(&b.1).then(a.2.total_cmp(&b.2)));
+    let total: f64 = measured.iter().map(|(.., area)| area).sum();
+    let n_within = measured.partition_point(|(_, distance, _)| *distance <= limit);
     let within = &measured[..n_within];
-    let covered: f64 = within.iter().map(|(_, area)| area).sum();
-    let sum_sq: f64 = within.iter().map(|(d, area)| d * d * area).sum();
+    let covered: f64 = within.iter().map(|(.., area)| area).sum();
+    let sum_sq: f64 = within.iter().map(|(_, d, area)| d * d * area).sum();
     let mut running = 0.0;
-    let p95 = within.iter().find(|(_, area)| {
+    let p95 = within.iter().find(|(.., area)| {
         running += area;
         running >= 0.95 * covered
     });
-    Ok(OneSided {
+    OneSided {
         overlap: if total > 0.0 { covered / total } else { 0.0 },
         rmse: if covered > 0.0 {
             (sum_sq / covered).sqrt()
         } else {
             0.0
         },
-        p95: p95.map_or(0.0, |(distance, _)| *distance),
-        max: within.last().map_or(0.0, |(distance, _)| *distance),
-        max_anywhere: measured.last().map_or(0.0, |(distance, _)| *distance),
-    })
+        p95: p95.map_or(0.0, |(_, distance, _)| *distance),
+        max: within.last().map_or(0.0, |(_, distance, _)| *distance),
+        max_anywhere: measured.last().map_or(0.0, |(_, distance, _)| *distance),
+    }
 }

@@ -3,6 +3,7 @@
 
 use super::borders::{BorderComparison, Borders};
 use super::contact::{Contact, ContactSearch, Contacts, MAX_NODES};
+use super::coverage::FarNodes;
 use super::least_squares::NormalEquations;
 use super::tolerance::Distances;
 use crate::geometry::{Point3, Similarity};
@@ -21,6 +22,8 @@ pub(crate) struct PoseEvidence<'a> {
     pub(super) reach: f64,
     /// The largest offset between two skins of one sheet.
     pub(super) most_offset: f64,
+    /// Nodes of both parts that lie farther apart than the tolerance, where all were measured; else none.
+    pub(super) far: FarNodes,
 }
 
 impl PoseEvidence<'_> {
@@ -46,6 +49,15 @@ impl PoseEvidence<'_> {
     /// O(nodes + places · log triangles).
     pub(super) fn of_larger(&self, is_asked: impl Fn(&Point3) -> bool + Sync) -> Vec<Contact> {
         self.search().of_larger(&self.pose, is_asked)
+    }
+
+    /// Where the far nodes meet the other part: those of the source, and those of the target.
+    /// O(far nodes · log triangles).
+    pub(super) fn of_far(&self) -> [Vec<Contact>; 2] {
+        let search = self.search();
+        let [of_source, of_target] = &self.far;
+        [(true, of_source), (false, of_target)]
+            .map(|(of_source, nodes)| search.of_nodes(&self.pose, of_source, nodes))
     }
 
     /// Places of the smaller part that lie over a place of the larger one, where neither meets anything.
@@ -96,6 +108,7 @@ impl<'a, 'b> EvidenceSearch<'a, 'b> {
             noise: self.noise,
             reach: self.contacts.reach(),
             most_offset: self.most_offset,
+            far: FarNodes::default(),
         })
     }
 }

@@ -37,6 +37,7 @@ mod words;
 
 pub use ambiguity::{Ambiguity, Clarity, Twin, TwinAxis};
 pub use assessment::{AlternativeStatements, Assessment};
+use coverage::coverage_and_far;
 pub use coverage::{Coverage, OneSided, coverage, overlap_limit, quick_overlap};
 pub use free_motion::{FreeMotion, FreeMotionKind, Freedom, free_motions};
 pub use pose::{PoseKind, PoseStatement};
@@ -53,7 +54,7 @@ use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{MatchOutcome, Surface};
 use decide::{Grounds, decide};
-use statements::{Statements, mirrored_statement, statements};
+use statements::{Asked, Statements, mirrored_statement, statements};
 use tolerance::Distances;
 
 /// Assesses the pose of `outcome` on the full meshes. O(vertices · log triangles).
@@ -69,7 +70,15 @@ pub fn assess(
         .limit
         .unwrap_or_else(|| overlap_limit(source, target, pose.scale, settings.allowance));
     monitor.progress("verify", 0, Some(2));
-    let coverage = coverage(source, target, pose, limit, monitor)?;
+    let pair = [source, target];
+    let Distances {
+        noise,
+        tolerance,
+        reach,
+        ..
+    } = Distances::of(source, target, pose.scale, settings);
+    let far = [tolerance.remainder, reach];
+    let (coverage, far) = coverage_and_far(pair, pose, limit, far, monitor)?;
     monitor.progress("verify", 1, Some(2));
     let freedom = free_motions(source, target, pose, limit);
     monitor.check()?;
@@ -78,14 +87,15 @@ pub fn assess(
         let other = outcome.alternatives.first();
         ambiguity.twin = other.map(|a| Twin::of(source, pose, &a.target_from_source));
     }
-    let Distances {
-        noise, tolerance, ..
-    } = Distances::of(source, target, pose.scale, settings);
+    let asked = Asked {
+        motion: freedom.motion.as_ref(),
+        far,
+    };
     let Statements {
         uncertainty,
         shape,
         held_across,
-    } = statements([source, target], pose, freedom.motion.as_ref(), settings);
+    } = statements(pair, pose, asked, settings);
     monitor.check()?;
     let mut assessment = Assessment {
         verdict: Verdict::Good,
@@ -106,7 +116,7 @@ pub fn assess(
     // The ends of the part lie half a diagonal from its middle.
     let most_bent = tolerance.springback / (0.5 * target.measures().diagonal);
     let most_scaled = most_bent + scale_of_offset(target, shape.offset.unwrap_or(0.0));
-    let mirrored = mirrored_statement([source, target], outcome, settings);
+    let mirrored = mirrored_statement(pair, outcome, settings);
     monitor.check()?;
     let grounds = Grounds {
         outcome,
@@ -157,7 +167,7 @@ pub fn assess_alternative(
     let tolerance = Distances::of(source, target, pose.scale, settings).tolerance;
     let Statements {
         uncertainty, shape, ..
-    } = statements([source, target], pose, None, settings);
+    } = statements([source, target], pose, Asked::default(), settings);
     AlternativeStatements {
         pose: PoseStatement {
             kind: PoseKind::Ambiguous,

@@ -2,6 +2,7 @@
 
 use super::borders::{BorderComparison, HOLES_THAT_HOLD};
 use super::contact::{ContactSearch, MAX_NODES};
+use super::coverage::FarNodes;
 use super::decide::{LEAST_TOGETHER, NEAR_MIRROR};
 use super::evidence::{EvidenceSearch, PoseEvidence};
 use super::fit::Fit;
@@ -38,14 +39,26 @@ pub(crate) enum Outlines {
     LeftOut,
 }
 
+/// What both statements are asked about besides the pose.
+#[derive(Default)]
+pub(super) struct Asked<'a> {
+    /// The motion that the surfaces leave free.
+    pub(super) motion: Option<&'a FreeMotion>,
+    /// Nodes that lie far apart, where all of them were measured.
+    pub(super) far: FarNodes,
+}
+
 /// Both statements. O(border edges + nodes · log triangles).
 pub(super) fn statements(
     pair: [&Surface; 2],
     pose: &Similarity,
-    motion: Option<&FreeMotion>,
+    asked: Asked<'_>,
     settings: &AssessSettings,
 ) -> Statements {
-    let compared = Compared::under(pair, pose, settings, Outlines::Compared);
+    let mut compared = Compared::under(pair, pose, settings, Outlines::Compared);
+    if let Some(met) = &mut compared.met {
+        met.evidence.far = asked.far;
+    }
     let mut shape = compared.shape(settings);
     if let Some(met) = &compared.met
         && shape.met < OVERHANGS
@@ -54,7 +67,9 @@ pub(super) fn statements(
             .overhang
             .get_or_insert_with(|| met.evidence.overhang());
     }
-    let held_across = motion.and_then(|motion| compared.held_across(pose, motion));
+    let held_across = asked
+        .motion
+        .and_then(|motion| compared.held_across(pose, motion));
     let (met, tolerance) = (compared.met, compared.tolerance);
     Statements {
         uncertainty: met.and_then(|met| met.uncertainty(settings, &tolerance)),
@@ -241,7 +256,11 @@ mod tests {
                 point: Point3::origin(),
             };
             let longer = plate(out);
-            statements([&longer, &whole], &pose, Some(&along), &settings).held_across
+            let asked = Asked {
+                motion: Some(&along),
+                ..Asked::default()
+            };
+            statements([&longer, &whole], &pose, asked, &settings).held_across
         };
         let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
         assert!(held([0.0; 2], x).unwrap() > 0.98);

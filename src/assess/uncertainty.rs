@@ -361,7 +361,7 @@ fn squares_of_gaps(evidence: &PoseEvidence<'_>, weights: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::statements::statements;
+    use super::super::statements::{Asked, statements};
     use super::super::tolerance::AssessSettings;
     use super::*;
     use crate::geometry::TriMesh;
@@ -400,7 +400,7 @@ mod tests {
 
     fn uncertainty(source: &Surface, target: &Surface, pose: &Similarity) -> PoseUncertainty {
         let settings = AssessSettings::default();
-        let found = statements([source, target], pose, None, &settings);
+        let found = statements([source, target], pose, Asked::default(), &settings);
         found.uncertainty.unwrap()
     }
 
@@ -431,14 +431,14 @@ mod tests {
             ..AssessSettings::default()
         };
         let still = Similarity::identity();
-        let stated = statements([&flat, &flat], &still, None, &thick)
+        let stated = statements([&flat, &flat], &still, Asked::default(), &thick)
             .uncertainty
             .unwrap();
         assert_eq!(stated.unknown_offset, 0.8);
         assert!((stated.largest - 0.8).abs() < 0.05, "{stated:?}");
         assert_eq!(stated.along, PartDirection::Through);
         let part = gutter(0.3, 0.0);
-        let curved = statements([&part, &part], &still, None, &thick)
+        let curved = statements([&part, &part], &still, Asked::default(), &thick)
             .uncertainty
             .unwrap();
         assert_eq!(curved.unknown_offset, 0.0);

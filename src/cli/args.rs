@@ -80,7 +80,7 @@ pub enum Task {
 #[command(after_help = MATCH_HELP)]
 pub struct MatchArgs {
     /// The crash part or the whole crash model (fixed), or a project (.shapematch). A project is matched
-    /// with the settings stored in it, or those given here in their place; its parts and units stay.
+    /// with the settings stored in it, or those given here in their place; its files, parts, units and method stay.
     pub crash: PathBuf,
     /// The stamped part, for example a dynain (moves).
     pub stamped: Option<PathBuf>,

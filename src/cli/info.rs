@@ -119,7 +119,7 @@ fn describe_forming(forming: &FormingInfo) -> String {
     if forming.others > 0 {
         pieces.push(format!(
             "results of {} that are not kept",
-            counted(forming.others, "solid")
+            counted(forming.others, "other element")
         ));
     }
     if forming.history_variables > 0 {

@@ -33,7 +33,7 @@ use crate::pipeline::map::{
 use crate::pipeline::outputs::{Content, Target};
 use crate::registration::Hand;
 use crate::role::Role;
-use crate::text::counted;
+use crate::text::{compared_percents, counted};
 
 /// Exit status where a gate such as `--require` is not met; the files are written all the same.
 const EXIT_GATE: u8 = 1;
@@ -318,7 +318,7 @@ fn tables(
 fn is_short(outputs: &MapOutputArgs, record: &MapRecord) -> bool {
     outputs
         .require
-        .is_some_and(|required| 100.0 * record.mapped_area < required)
+        .is_some_and(|required| record.mapped_area < required / 100.0)
 }
 
 /// Writes the files, prints the summary, and says how it went.
@@ -354,14 +354,14 @@ fn finish(
     for warning in &record.warnings {
         log::warn!("{warning}");
     }
-    let share = 100.0 * record.mapped_area;
     if let Some(required) = outputs.require.filter(|_| is_short(outputs, record)) {
         let withheld = if outputs.strict {
             "; no deck is written"
         } else {
             ""
         };
-        log::error!("{share:.1} % of the area is mapped, {required} % are required{withheld}");
+        let [mapped, _] = compared_percents([record.mapped_area, required / 100.0]);
+        log::error!("{mapped} of the area is mapped, {required} % are required{withheld}");
         return Ok(ExitCode::from(EXIT_GATE));
     }
     if record.mapped_area <= 0.0 {

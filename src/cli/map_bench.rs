@@ -3,10 +3,8 @@
 use std::fmt::Write as _;
 use std::process::ExitCode;
 
-use anyhow::bail;
-
 use super::args::BenchArgs;
-use super::{check_outputs, json_target, print, progress, takes_stdout, write_json};
+use super::{UsageError, check_outputs, json_target, print, progress, takes_stdout, write_json};
 use crate::pipeline::bench::map::{MapBench, map_bench, table_names};
 use crate::text::{counted, fixed, grouped};
 
@@ -17,7 +15,8 @@ pub fn run(args: &BenchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         && !table_names().iter().any(|name| name.contains(only))
     {
         let names = table_names().join(", ");
-        bail!("no table has {only:?} in its name; the tables are: {names}");
+        let text = format!("no table has {only:?} in its name; the tables are: {names}");
+        return Err(UsageError(text).into());
     }
     let monitor = progress::monitor(quiet);
     let bench = map_bench(args.only.as_deref(), &monitor)?;

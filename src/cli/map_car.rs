@@ -211,13 +211,14 @@ fn targets(args: &MapCarArgs, stamped: &[StampedFile]) -> Vec<Target> {
 
 /// One line for each stamped part, its reasons beneath.
 fn table(record: &CarRecord) -> String {
-    let rows: Vec<[String; 8]> = record.rows.iter().map(CarRow::cells).collect();
-    let heads = CAR_COLUMNS.map(str::to_owned);
-    let all = || std::iter::once(&heads).chain(&rows);
+    let mut rows = vec![CAR_COLUMNS.map(str::to_owned)];
+    rows.extend(record.rows.iter().map(CarRow::cells));
+    let all = || rows.iter();
     let width = |column: usize| all().map(|row| row[column].chars().count()).max();
     let widths: Vec<usize> = (0..7).map(|column| width(column).unwrap_or(0)).collect();
     let mut text = String::new();
-    for row in all() {
+    let reasons = record.rows.iter().map(|row| &row.reasons[..]);
+    for (row, reasons) in rows.iter().zip(std::iter::once(&[][..]).chain(reasons)) {
         let cells: Vec<String> = row
             .iter()
             .zip(&widths)
@@ -225,12 +226,8 @@ fn table(record: &CarRecord) -> String {
             .collect();
         text.push_str(cells.join("  ").trim_end());
         text.push('\n');
-        let is_head = std::ptr::eq(row, &heads);
-        for reason in row[7]
-            .split("; ")
-            .filter(|reason| !is_head && !reason.is_empty())
-        {
-            text.push_str(&format!("    {reason}\n"));
+        for reason in reasons {
+            text.push_str(&format!("    {}\n", reason.text()));
         }
     }
     for copy in &record.copies {

@@ -2,20 +2,22 @@
 
 use std::path::PathBuf;
 
-use crate::pipeline::map::{CheckRecord, ComparisonRecord, DifferenceRecord, MapFiles, MapRecord};
-use crate::text::{counted, grouped, length, millis};
+use crate::mapping::BackDifference;
+use crate::pipeline::map::{
+    CheckRecord, ComparedRow, ComparisonRecord, DifferenceRecord, MapFiles, MapRecord,
+};
+use crate::text::{counted, grouped, length, millis, parts_by_id, share};
 
 /// The result in a few lines. Files that could not be written are not among those that were.
 pub(super) fn summary(record: &MapRecord, files: Option<&MapFiles>, failed: &[PathBuf]) -> String {
     let mut text = String::new();
     let mut line = |head: &str, rest: String| text.push_str(&format!("{head:<9}{rest}\n"));
-    let ids: Vec<String> = record.crash_parts.iter().map(u64::to_string).collect();
-    line("Onto", format!("part {}", ids.join(", ")));
+    line("Onto", parts_by_id(&record.crash_parts));
     line(
         "Mapped",
         format!(
-            "{:.1} % of the area of {} in {}",
-            100.0 * record.mapped_area,
+            "{} of the area of {} in {}",
+            share(record.mapped_area),
             counted(record.n_elements, "element"),
             millis(record.map_ms)
         ),
@@ -46,21 +48,13 @@ pub(super) fn summary(record: &MapRecord, files: Option<&MapFiles>, failed: &[Pa
         }
     }
     if let Some(back) = &record.map_back {
-        let percent = |value: f64, range: f64| {
-            if range > 0.0 {
-                format!("{:.1} %", 100.0 * value / range)
-            } else {
-                "0 %".to_owned()
-            }
-        };
-        let thickness = record.thickness.as_ref().map(|_| {
-            let share = percent(back.thickness_p95, back.thickness_range);
-            format!("{share} of the thickness range")
-        });
-        let plastic = record.plastic_strain.as_ref().map(|_| {
-            let share = percent(back.plastic_p95, back.plastic_range);
-            format!("{share} of the range of plastic strain")
-        });
+        let of_range = |back: &BackDifference| share(back.share_of_range().unwrap_or(0.0));
+        let thickness = record.thickness.as_ref();
+        let thickness =
+            thickness.map(|_| format!("{} of the thickness range", of_range(&back.thickness)));
+        let plastic = record.plastic_strain.as_ref();
+        let plastic =
+            plastic.map(|_| format!("{} of the range of plastic strain", of_range(&back.plastic)));
         let all: Vec<String> = thickness.into_iter().chain(plastic).collect();
         if !all.is_empty() {
             line("Map back", format!("95 % within {}", all.join(", ")));
@@ -162,10 +156,8 @@ fn compared(other: &ComparisonRecord) -> Vec<(&'static str, String)> {
         grouped(other.n_only_other)
     );
     let mut lines = vec![("Compared", counts)];
-    for (name, found) in other.rows() {
-        let line = |found| ("", format!("{name}: {}", differing(found)));
-        lines.extend(found.map(line));
-    }
+    let row = |row: ComparedRow<'_>| ("", format!("{}: {}", row.name, differing(row.difference)));
+    lines.extend(other.rows().map(row));
     lines
 }
 

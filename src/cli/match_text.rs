@@ -2,12 +2,13 @@
 
 use std::fmt::Write as _;
 
+use crate::assess::fit_beside;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::units::PairUnits;
 use crate::registration::{MatchOutcome, StartOutcome, StartRecord};
 use crate::report::{MatchRecord, number, start_name};
 use crate::role::{PerRole, Role};
-use crate::text::{Lengths, capital, counted, grouped, length, millis, percent};
+use crate::text::{Lengths, capital, counted, grouped, millis, parts_by_id, percent};
 
 /// Verdict, matrix, fit, starts and times, about twenty lines.
 pub fn report(record: &MatchRecord, outcome: &MatchOutcome, parts: PerRole<&LoadedPart>) -> String {
@@ -40,12 +41,12 @@ pub fn report(record: &MatchRecord, outcome: &MatchOutcome, parts: PerRole<&Load
 fn side(text: &mut String, role: Role, part: &LoadedPart) {
     let ids: Vec<String> = part.chosen_part_ids().iter().map(u64::to_string).collect();
     let parts = match ids.len() {
-        0..=4 => ids.join(", "),
-        n => format!("{} … ({})", ids[..3].join(", "), counted(n, "part")),
+        0..=4 => parts_by_id(&part.chosen_part_ids()),
+        n => format!("parts {} … ({n})", ids[..3].join(", ")),
     };
     let triangles = counted(part.mesh.n_triangles(), "triangle");
     let (role, path) = (capital(role.word()), part.path.display());
-    let _ = writeln!(text, "{role:<8} {path}, part {parts}, {triangles}");
+    let _ = writeln!(text, "{role:<8} {path}, {parts}, {triangles}");
 }
 
 fn matrix(text: &mut String, record: &MatchRecord) {
@@ -75,8 +76,8 @@ fn fit(text: &mut String, record: &MatchRecord) {
     let _ = writeln!(
         text,
         "Fit      RMS {}, P95 {}, max {}",
-        length(metrics.rmse),
-        length(metrics.p95),
+        lengths.of(metrics.rmse),
+        lengths.of(metrics.p95),
         lengths.of(metrics.max)
     );
     let overlap = &metrics.overlap;
@@ -90,10 +91,8 @@ fn fit(text: &mut String, record: &MatchRecord) {
     if let Some(other) = record.alternatives.first() {
         let ratio = other.score_ratio;
         let which = if ratio < 1.0 { "best" } else { "second-best" };
-        let _ = writeln!(
-            text,
-            "Next     the {which} pose scores {ratio:.2} times as high (lower is better)"
-        );
+        let fit = fit_beside(ratio, other.by_shape);
+        let _ = writeln!(text, "Next     the {which} pose: {fit}");
     }
 }
 

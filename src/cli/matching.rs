@@ -19,6 +19,7 @@ use crate::pipeline::PipelineError;
 use crate::pipeline::find_parts::{FoundParts, find_parts, is_part_open};
 use crate::pipeline::load::{LoadedPart, load};
 use crate::pipeline::match_parts::{MatchRun, ReducedPair, match_parts, with_alternative};
+use crate::pipeline::outputs::cards::included_name;
 use crate::pipeline::outputs::record::match_record;
 use crate::pipeline::outputs::{MeshOutput, Output, OutputInput, Target};
 use crate::pipeline::project::{EXTENSION, is_project};
@@ -147,7 +148,7 @@ fn check_included_name(outputs: &[(Output, &Path)], stamped: Option<&Path>) -> a
         .map(|name| name.to_string_lossy());
     match name {
         Some(name) if outputs.iter().any(is_cards) => {
-            let checked = check_file_name(name.trim_end_matches(".gz"));
+            let checked = check_file_name(included_name(&name));
             checked.map_err(|error| UsageError(format!("--cards: {error}")).into())
         }
         _ => Ok(()),
@@ -188,7 +189,7 @@ fn write(
             Output::Cards(_) if is_printing => {
                 print(&format!("Cards    {}; {note}\n", path.display()))?;
             }
-            Output::Mesh(_) => log::warn!("{}: {note}", path.display()),
+            Output::Cards(_) | Output::Mesh(_) => log::warn!("{}: {note}", path.display()),
             _ => {}
         }
     }

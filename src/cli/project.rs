@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use super::args::MatchArgs;
 use super::recipe::{Asked, take_typed};
 use super::{UsageError, check_outputs, json_target, print, takes_stdout, write_json};
-use crate::formats::{Disk, FileHash, Selection};
+use crate::formats::{Disk, FileHash, ReadOptions, Selection};
 use crate::geometry::Similarity;
 use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
@@ -25,6 +25,7 @@ pub fn open(
     args: &MatchArgs,
     monitor: &Monitor,
 ) -> anyhow::Result<(Asked, PerRole<LoadedPart>, bool)> {
+    refuse_own(args)?;
     let path = args.crash.as_path();
     let request = ProjectRequest {
         path: path.to_path_buf(),
@@ -58,11 +59,7 @@ pub fn open(
     let asked = Asked {
         crash: entries.crash.load_settings(),
         stamped: entries.stamped.load_settings(),
-        max_triangles: match entries.map(|entry| entry.max_triangles) {
-            levels if is_reduced(levels) && args.settings.value("triangles").is_none() => levels,
-            // Nothing was reduced by hand: the recipe says what to do.
-            _ => PerRole::both(begin.recipe.max_triangles),
-        },
+        max_triangles: max_triangles(args, entries, &begin.recipe),
         recipe: begin.recipe,
         current: begin.pose,
         pose_number: begin.alternative.map_or(1, |index| index + 2),
@@ -77,6 +74,44 @@ fn is_part_chosen(project: &Project, crash: &PartEntry, is_same: bool) -> bool {
     let result = project.result.as_ref();
     let is_of_these = result.is_some_and(|result| result.exchanged == PerRole::both(false));
     !is_usual || crash.are_all_meant || (is_of_these && is_same)
+}
+
+/// Refuses options about what a project has its own of.
+fn refuse_own(args: &MatchArgs) -> Result<(), UsageError> {
+    let (input, typed) = (&args.input, &args.settings);
+    let usual = ReadOptions::USUAL_LIMIT;
+    for (is_typed, option) in [
+        (input.crash_part.is_some(), "crash-part"),
+        (input.stamped_part.is_some(), "stamped-part"),
+        (input.crash_units.is_some(), "crash-units"),
+        (input.stamped_units.is_some(), "stamped-units"),
+        (input.crash_length_factor != 1.0, "crash-length-factor"),
+        (input.stamped_length_factor != 1.0, "stamped-length-factor"),
+        (!input.read.include_folder.is_empty(), "include-folder"),
+        (input.read.read_limit != usual, "read-limit"),
+        (typed.value("method").is_some(), "method"),
+        (!typed.start_poses.is_empty(), "start-pose"),
+    ] {
+        if is_typed {
+            let text = format!("--{option} is for two files; a project has its own");
+            return Err(UsageError(text));
+        }
+    }
+    Ok(())
+}
+
+/// The levels that the starts run on: those typed, else those that were made by hand, else the one of the recipe.
+fn max_triangles(
+    args: &MatchArgs,
+    entries: PerRole<&PartEntry>,
+    recipe: &MatchRecipe,
+) -> PerRole<Option<usize>> {
+    let levels = match entries.map(|entry| entry.max_triangles) {
+        levels if is_reduced(levels) && args.settings.value("triangles").is_none() => levels,
+        _ => PerRole::both(recipe.max_triangles),
+    };
+    let typed = PerRole::new(args.input.crash_triangles, args.input.stamped_triangles);
+    PerRole::from_fn(|role| typed.get(role).or(*levels.get(role)))
 }
 
 fn is_reduced(levels: PerRole<Option<usize>>) -> bool {
@@ -96,15 +131,6 @@ struct Begin {
 /// leave out of the settings, unless another start is typed.
 fn begin(project: &Project, args: &MatchArgs) -> anyhow::Result<Begin> {
     let typed = &args.settings;
-    for (is_typed, option) in [
-        (typed.value("method").is_some(), "method"),
-        (!typed.start_poses.is_empty(), "start-pose"),
-    ] {
-        if is_typed {
-            let text = format!("--{option} is for two files; a project has its own");
-            return Err(UsageError(text).into());
-        }
-    }
     let mut begin = Begin {
         recipe: project.recipe.clone(),
         pose: project.pose,

@@ -3,11 +3,9 @@
 use std::fmt::Write as _;
 use std::process::ExitCode;
 
-use anyhow::bail;
-
 use super::args::BenchArgs;
 use super::bench::{check_table, write_table};
-use super::progress;
+use super::{UsageError, progress};
 use crate::pipeline::bench::robustness::{RobustnessSettings, robustness};
 use crate::pipeline::bench::robustness_page::page;
 use crate::pipeline::bench::robustness_table::{COLUMNS, RobustnessTable, notes};
@@ -36,16 +34,20 @@ fn settings(args: &BenchArgs) -> anyhow::Result<RobustnessSettings> {
     };
     // Each word narrows either the parts or the scenarios.
     let words: Vec<&str> = only.split(',').map(str::trim).collect();
-    let parts: Vec<SamplePart> = words
-        .iter()
-        .filter_map(|w| SamplePart::from_name(w))
-        .collect();
-    let named = |scenario: &Scenario| words.iter().any(|word| scenario.name().starts_with(word));
-    let scenarios: Vec<Scenario> = Scenario::ALL.into_iter().filter(named).collect();
-    if parts.is_empty() && scenarios.is_empty() {
-        let names = Scenario::ALL.map(Scenario::name).join(", ");
-        bail!("no part and no scenario begins like {only:?}; the scenarios are: {names}");
+    let parts = SamplePart::ALL.map(|part| part.name().to_owned());
+    let scenarios = Scenario::ALL.map(Scenario::name);
+    let begins = |word: &&str, names: &[String]| names.iter().any(|name| name.starts_with(*word));
+    let is_unknown = |word: &&&str| !begins(word, &parts) && !begins(word, &scenarios);
+    if let Some(word) = words.iter().find(is_unknown) {
+        let (parts, scenarios) = (parts.join(", "), scenarios.join(", "));
+        let text = format!("no part ({parts}) and no scenario ({scenarios}) begins like {word:?}");
+        return Err(UsageError(text).into());
     }
+    let is_meant = |name: &str| words.iter().any(|word| name.starts_with(word));
+    let all = SamplePart::ALL.into_iter();
+    let parts: Vec<SamplePart> = all.filter(|part| is_meant(part.name())).collect();
+    let all = Scenario::ALL.into_iter();
+    let scenarios: Vec<Scenario> = all.filter(|scenario| is_meant(&scenario.name())).collect();
     if !parts.is_empty() {
         settings.parts = parts;
     }

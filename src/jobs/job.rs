@@ -381,13 +381,22 @@ pub struct FoundCrash {
 pub enum JobOutput {
     /// A project was read, with its parts or with the names of those that are missing.
     ProjectOpened(Box<OpenedProject>),
-    /// A part was read or taken anew.
+    /// A part was read.
     Loaded {
         /// Which part it was meant to be.
         role: Role,
         /// Where it came from.
         source: PartSource,
         /// The part as it was read.
+        part: Arc<LoadedPart>,
+        /// What the window shows about it.
+        facts: Arc<PartFacts>,
+    },
+    /// Other elements were taken from a file that was read before.
+    Reselected {
+        /// Which part it is.
+        role: Role,
+        /// The part of these elements.
         part: Arc<LoadedPart>,
         /// What the window shows about it.
         facts: Arc<PartFacts>,

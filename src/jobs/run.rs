@@ -10,7 +10,7 @@ use super::{
 };
 use super::{
     FoundCrash, JobKind, JobOutput, MeasureLevelInput, MeasuredLevel, Measurement, PartFacts,
-    PartSource, Recording, ReduceInput,
+    Recording, ReduceInput,
 };
 use crate::assess::{coverage, overlap_limit, quick_overlap};
 use crate::monitor::{Cancelled, Monitor};
@@ -95,7 +95,14 @@ impl Runner for PipelineRunner {
                 settings,
             } => {
                 let part = source.load(role, &settings, monitor)?;
-                Ok(loaded(role, source, part, monitor)?)
+                let facts = Arc::new(PartFacts::of(&part, monitor)?);
+                let part = Arc::new(part);
+                Ok(JobOutput::Loaded {
+                    role,
+                    source,
+                    part,
+                    facts,
+                })
             }
             JobKind::Reselect {
                 role,
@@ -103,9 +110,10 @@ impl Runner for PipelineRunner {
                 settings,
             } => {
                 let model = Arc::clone(&part.model);
-                let again = load::prepare(&part.path, model, &settings, monitor)?;
-                let source = PartSource::File(part.path.clone());
-                Ok(loaded(role, source, again, monitor)?)
+                let part = load::prepare(&part.path, model, &settings, monitor)?;
+                let facts = Arc::new(PartFacts::of(&part, monitor)?);
+                let part = Arc::new(part);
+                Ok(JobOutput::Reselected { role, part, facts })
             }
             JobKind::Reduce(input) => reduce(input, monitor),
             JobKind::MeasureLevel(input) => measure_level(input, monitor),
@@ -128,21 +136,6 @@ impl Runner for PipelineRunner {
             JobKind::Export(request) => Ok(JobOutput::Exported(export(request, monitor)?)),
         }
     }
-}
-
-fn loaded(
-    role: Role,
-    source: PartSource,
-    part: LoadedPart,
-    monitor: &Monitor,
-) -> Result<JobOutput, Cancelled> {
-    let facts = Arc::new(PartFacts::of(&part, monitor)?);
-    Ok(JobOutput::Loaded {
-        role,
-        source,
-        part: Arc::new(part),
-        facts,
-    })
 }
 
 fn reduce(input: ReduceInput, monitor: &Monitor) -> Result<JobOutput, JobError> {

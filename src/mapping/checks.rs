@@ -98,22 +98,32 @@ pub fn histogram_distance(a: &Histogram, b: &Histogram) -> f64 {
     0.5 * pairs.map(|(a, b)| (a - b).abs()).sum::<f64>()
 }
 
+/// How far one quantity of the sources is from what comes back, weighted by area.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BackDifference {
+    /// Root mean square.
+    pub rms: f64,
+    /// 95 % of the area differ by less.
+    pub p95: f64,
+    /// The sources' 95th less their 5th percentile, to compare with.
+    pub range: f64,
+}
+
+impl BackDifference {
+    /// What 95 % of the area differ by less than, as a share of the range; `None` where the range is 0.
+    pub fn share_of_range(&self) -> Option<f64> {
+        (self.range > 0.0).then(|| self.p95 / self.range)
+    }
+}
+
 /// What comes back when the mapped values are mapped onto the sources again. Two mappings lie
 /// between the values compared, so the error of one is about half.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapBack {
-    /// Root mean square difference of the thickness, area-weighted.
-    pub thickness_rms: f64,
-    /// 95 % of the area differ by less.
-    pub thickness_p95: f64,
-    /// The sources' 95th less their 5th percentile, to compare with.
-    pub thickness_range: f64,
-    /// The same for the plastic strain, mean over the layers.
-    pub plastic_rms: f64,
-    /// 95 % of the area differ by less.
-    pub plastic_p95: f64,
-    /// The sources' 95th less their 5th percentile.
-    pub plastic_range: f64,
+    /// Difference of the thickness.
+    pub thickness: BackDifference,
+    /// Difference of the plastic strain, mean over the layers.
+    pub plastic: BackDifference,
     /// Share of the sources' area that the way back reached.
     pub coverage: f64,
     /// For each element of each source whether the way back reached it. Where several sources overlap, it
@@ -264,25 +274,19 @@ impl Compared {
             area,
             ..
         } = self;
-        let (thickness, plastic) = (spread(thickness, monitor)?, spread(plastic, monitor)?);
         Ok(MapBack {
-            thickness_rms: thickness.0,
-            thickness_p95: thickness.1,
-            thickness_range: thickness.2,
-            plastic_rms: plastic.0,
-            plastic_p95: plastic.1,
-            plastic_range: plastic.2,
+            thickness: back_difference(thickness, monitor)?,
+            plastic: back_difference(plastic, monitor)?,
             coverage: covered_area / area,
             is_covered,
         })
     }
 }
 
-/// Root mean square and 95th percentile of the differences, and the range of the values.
-fn spread(
+fn back_difference(
     (own, differences): (Weighted, Weighted),
     monitor: &Monitor,
-) -> Result<(f64, f64, f64), Cancelled> {
+) -> Result<BackDifference, Cancelled> {
     let range = distribution(own.into_iter()).map_or(0.0, |d| d.percentiles[2] - d.percentiles[0]);
     monitor.check()?;
     let squares = differences
@@ -297,7 +301,7 @@ fn spread(
         0.0
     };
     monitor.check()?;
-    Ok((rms, p95, range))
+    Ok(BackDifference { rms, p95, range })
 }
 
 #[cfg(test)]

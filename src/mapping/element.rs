@@ -41,12 +41,14 @@ pub(super) struct Buffers {
     pub strains: MappedLayers<6>,
 }
 
-/// What the confidence of an element is made of besides its report.
-#[derive(Debug, Clone, Copy, Default)]
+/// What is needed of an element besides its report once all are known.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Limits {
     pub max_distance: f64,
     /// 1 without a second sheet near by, falling to 0.
     pub uniqueness: f64,
+    /// The status where its sources are in no conflict.
+    pub without_conflict: Status,
 }
 
 /// Elements whose partners are known and whose values are not yet made.
@@ -237,19 +239,23 @@ impl Context<'_> {
         } else {
             0.0
         };
-        let mut status = found.status(coverage);
+        let mut without_conflict = found.status(coverage);
         let partner = self.partner(centre.as_ref(), owner, groups, copied.is_some());
-        let uniqueness = match (&centre, status) {
+        let uniqueness = match (&centre, without_conflict) {
             (Some(centre), Status::Mapped | Status::Partly) => {
                 self.uniqueness(element, centre, reach)
             }
             _ => 1.0,
         };
-        if status.has_values() && found.in_conflict {
-            status = Status::Conflict;
-        } else if status.has_values() && uniqueness < 2.0 * (1.0 - AMBIGUOUS_RATIO) {
-            status = Status::TwoLayers;
+        let has_values = without_conflict.has_values();
+        if has_values && uniqueness < 2.0 * (1.0 - AMBIGUOUS_RATIO) {
+            without_conflict = Status::TwoLayers;
         }
+        let status = if has_values && found.in_conflict {
+            Status::Conflict
+        } else {
+            without_conflict
+        };
         if !status.has_values() {
             partners.groups.truncate(first);
         }
@@ -261,6 +267,7 @@ impl Context<'_> {
         out.limits.push(Limits {
             max_distance: reach,
             uniqueness,
+            without_conflict,
         });
         out.reports.push(ElementReport {
             status,

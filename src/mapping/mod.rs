@@ -34,7 +34,9 @@ mod target;
 mod uniqueness;
 
 pub use balance::ForceBalance;
-pub use checks::{Distribution, Histogram, MapBack, distribution, histogram_distance, map_back};
+pub use checks::{
+    BackDifference, Distribution, Histogram, MapBack, distribution, histogram_distance, map_back,
+};
 pub use error::MappingError;
 pub use history::{LawGap, LayerHistory, MappedHistory, SourceHistory};
 pub use layered::{Layered, PLASTIC_STRAIN, into_layers};
@@ -52,7 +54,7 @@ use rayon::prelude::*;
 
 use crate::geometry::{Similarity, z_order_for};
 use crate::monitor::{Cancelled, Monitor};
-use element::{Buffers, Context, Scratch};
+use element::{Buffers, Context, Limits, Scratch};
 use points::PointRules;
 use source::{PartnerFilter, PreparedSource, SourcePoint};
 
@@ -359,7 +361,8 @@ fn assemble(
         report.confidence = report.coverage * near * cos * cos * limits.uniqueness;
     }
     monitor.check()?;
-    drop_small_conflicts(&mut elements, &target.mesh);
+    let limits = places().map(|(chunk, at)| &chunk.limits[at]);
+    drop_small_conflicts(&mut elements, limits, &target.mesh);
     let thickness = if wanted.thickness {
         places().map(|(chunk, at)| chunk.thickness[at]).collect()
     } else {
@@ -391,7 +394,11 @@ fn median_offset(elements: &[ElementReport]) -> f64 {
 }
 
 /// Parts that merely touch, as at a weld line, are in no conflict.
-fn drop_small_conflicts(elements: &mut [ElementReport], mesh: &ShellMesh) {
+fn drop_small_conflicts<'a>(
+    elements: &mut [ElementReport],
+    limits: impl Iterator<Item = &'a Limits>,
+    mesh: &ShellMesh,
+) {
     let in_conflict = elements.iter().zip(mesh.areas());
     let area: f64 = in_conflict
         .filter(|(report, _)| report.status == Status::Conflict)
@@ -400,13 +407,9 @@ fn drop_small_conflicts(elements: &mut [ElementReport], mesh: &ShellMesh) {
     if area > CONFLICT_SHARE * mesh.area() {
         return;
     }
-    for report in elements {
+    for (report, limits) in elements.iter_mut().zip(limits) {
         if report.status == Status::Conflict {
-            report.status = if report.coverage >= 1.0 - 1e-9 {
-                Status::Mapped
-            } else {
-                Status::Partly
-            };
+            report.status = limits.without_conflict;
         }
     }
 }

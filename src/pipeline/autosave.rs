@@ -50,8 +50,8 @@ enum Request<S> {
 /// What the thread has done.
 #[derive(Debug)]
 pub enum AutosaveEvent<S> {
-    /// A project was saved.
-    Saved(PathBuf, S),
+    /// A project was saved, at a time in seconds since 1970.
+    Saved(PathBuf, u64, S),
     /// A project could not be saved.
     SaveFailed(String),
     /// A project was not saved over what another window has saved there.
@@ -263,7 +263,7 @@ impl Session {
                         self.saved.insert(path.clone(), project.saved_at);
                         // Nothing is left to be recovered until the next step.
                         self.end();
-                        AutosaveEvent::Saved(path, state)
+                        AutosaveEvent::Saved(path, project.saved_at, state)
                     }
                     Err(NotSaved::Failed(reason)) => AutosaveEvent::SaveFailed(reason),
                     Err(NotSaved::Elsewhere(reason)) => AutosaveEvent::SavedElsewhere(reason),

@@ -49,7 +49,7 @@ pub enum PipelineError {
     /// A file cannot be written.
     #[error("cannot write the file ({reason}): {path:?}")]
     Write {
-        /// File that is no project.
+        /// The file.
         path: PathBuf,
         /// What the system says.
         reason: String,
@@ -66,7 +66,7 @@ pub enum PipelineError {
          the same unit (--converted writes the stamped one in the crash part's unit)"
     )]
     CardsNeedOneUnit {
-        /// Name of the output.
+        /// Name of the part.
         name: String,
         /// Length factor of the part.
         factor: f64,
@@ -150,9 +150,9 @@ pub enum PipelineError {
         factor: f64,
     },
     /// Files to compare with hold nothing of the elements in question.
-    #[error("nothing to compare with: no thickness and no stress of these elements in {}", names(.0))]
+    #[error("nothing to compare with: no thickness, stress or strain of these elements in {}", names(.0))]
     NothingToCompare(Vec<PathBuf>),
-    /// A copy of the deck would leave elements without their thickness.
+    /// A deck of the kind that was asked for cannot be written; a sentence that says why.
     #[error("{0}")]
     MapOutput(String),
     /// What is written would be made of other contents than those that were read.
@@ -163,8 +163,8 @@ pub enum PipelineError {
     Cancelled(#[from] Cancelled),
 }
 
-/// ". The reader found: deck.k:5:7: error: …", if it found anything.
-/// What the reader found, by its line alone where it stands in the file that is named already.
+/// ". The reader found: deck.k:5:7: error: …", if it found anything; by its line alone where it stands in the file that
+/// is named already.
 fn because(path: &Path, diagnostic: &Option<Box<Diagnostic>>) -> String {
     let Some(diagnostic) = diagnostic.as_deref() else {
         return String::new();

@@ -1,6 +1,7 @@
 //! The parts of a crash model that a stamped part belongs to, found by likeness and by matches.
 
 mod fit;
+mod joined;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -21,6 +22,7 @@ use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{Hand, UnitGuess, guess_unit};
 use crate::role::PerRole;
 use crate::search::ClosestPoint as _;
+use joined::joined_parts;
 
 /// Choices of crash parts that are matched at most, the most alike first.
 const MOST_TRIED: usize = 12;
@@ -72,9 +74,9 @@ impl FoundParts {
 
 /// The parts of the crash model that the stamped part belongs to; `None` if no match says so.
 ///
-/// The chosen parts of `parts.crash` are compared by area, spread and thickness, one by one and all
-/// together, and the most alike of them matched, each alone, until one is good. Parts that are as alike as
-/// that one are matched too. Where much of the stamped part lies on nothing, parts that lie there are taken
+/// The chosen parts of `parts.crash` are compared by area, spread and thickness, one by one, those that share nodes
+/// together, and all together, and the most alike of these choices are matched, each by itself, until one is good.
+/// Those that are as alike as that one are matched too. Where much of the stamped part lies on nothing, parts that lie there are taken
 /// in and all matched together. `current` is where the stamped part lies, for recipes that start there. A
 /// stop request ends it with the best so far. Fails only when cancelled.
 pub fn find_parts(
@@ -177,21 +179,20 @@ fn not_among(taken: &[u64], mut rivals: Vec<u64>) -> Vec<u64> {
     rivals
 }
 
-/// True if one of several chosen crash parts should be found first: alone it is more like the stamped part
-/// than all together are.
+/// True if one of several chosen crash parts, or some that share nodes, should be found first: alone they are more like
+/// the stamped part than all together are.
 pub fn is_part_open(parts: PerRole<&LoadedPart>) -> bool {
-    if parts.stamped.chosen_part_ids().len() != 1 || parts.crash.chosen_part_ids().len() < 2 {
+    let n_chosen = parts.crash.chosen_part_ids().len();
+    if parts.stamped.chosen_part_ids().len() != 1 || n_chosen < 2 {
         return false;
     }
     let signatures = Signatures::of(parts, &Monitor::silent());
     let signatures = signatures.expect("nobody cancels a silent monitor");
     let candidates = signatures.candidates().into_iter();
-    let (singles, together): (Vec<_>, Vec<_>) = candidates.partition(|(_, ids)| ids.len() == 1);
-    let together = together.first().map_or(0.0, |(likeness, _)| *likeness);
-    let singles = singles
-        .into_iter()
-        .map(|(likeness, ids)| (ids[0], likeness));
-    !more_alike(singles, together).is_empty()
+    let (some, all): (Vec<_>, Vec<_>) = candidates.partition(|(_, ids)| ids.len() < n_chosen);
+    let all = all.first().map_or(0.0, |(likeness, _)| *likeness);
+    let some = some.into_iter().map(|(likeness, ids)| (ids[0], likeness));
+    !more_alike(some, all).is_empty()
 }
 
 /// What every match of the search needs.
@@ -367,7 +368,7 @@ pub fn mirrored_twin(
 struct Signatures {
     /// Of the stamped part; `None` without area.
     stamped: Option<Signature>,
-    /// Of every chosen crash part alone, and of all together where they are several.
+    /// Of every chosen crash part alone, of those that share nodes together, and of all together where they are several.
     crash: Vec<(Vec<u64>, Signature)>,
 }
 
@@ -383,15 +384,27 @@ impl Signatures {
         };
         let stamped = all_of(&used.stamped, &moments.stamped);
         let stamped = stamped.signature(parts.stamped.mean_thickness());
-        let factor = parts.crash.settings.length_factor;
         let summaries = parts.crash.model.part_summaries();
         let mut crash: Vec<(Vec<u64>, Signature)> = Vec::new();
         for row in summaries.iter().filter(|row| used.crash.contains(&row.id)) {
-            let thickness = row.thickness.map(|thickness| thickness * factor);
+            let thickness = parts.crash.lengthened(row.thickness);
             let own = moments.crash.get(&row.id);
             if let Some(own) = own.and_then(|own| own.signature(thickness)) {
                 crash.push((vec![row.id], own));
             }
+        }
+        for ids in joined_parts(&parts.crash.model, &used.crash) {
+            monitor.check()?;
+            if ids.len() == used.crash.len() {
+                continue;
+            }
+            let rows = summaries.iter().filter(|row| ids.contains(&row.id));
+            let thickness = mean_of(rows.filter_map(|row| {
+                let area = moments.crash.get(&row.id)?.area();
+                Some((parts.crash.lengthened(row.thickness)?, area))
+            }));
+            let own = all_of(&ids, &moments.crash).signature(thickness);
+            crash.extend(own.map(|own| (ids, own)));
         }
         if used.crash.len() > 1 {
             let together = all_of(&used.crash, &moments.crash);
@@ -411,7 +424,7 @@ impl Signatures {
         })
     }
 
-    /// Every chosen part alone, and all together, with their likeness to the stamped part, the most alike first.
+    /// The choices of parts with their likeness to the stamped part, the most alike first.
     fn candidates(&self) -> Vec<(f64, Vec<u64>)> {
         let Some(stamped) = &self.stamped else {
             return Vec::new();
@@ -424,6 +437,14 @@ impl Signatures {
         found.sort_by(|a, b| b.0.total_cmp(&a.0));
         found
     }
+}
+
+/// Mean of values with their areas; `None` without any.
+fn mean_of(values: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
+    let (sum, area) = values.fold((0.0, 0.0), |(sum, all), (value, area)| {
+        (sum + value * area, all + area)
+    });
+    (area > 0.0).then(|| sum / area)
 }
 
 /// Parts of which more than half lies on what the found ones leave of the stamped part.

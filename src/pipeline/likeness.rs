@@ -55,6 +55,11 @@ impl Moments {
         }
     }
 
+    /// The area.
+    pub fn area(&self) -> f64 {
+        self.area
+    }
+
     /// Area and edges, which no motion changes; `None` without area.
     pub fn signature(&self, thickness: Option<f64>) -> Option<Signature> {
         if self.area.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) {

@@ -317,8 +317,12 @@ impl LoadedPart {
 
     /// Area-weighted mean thickness of the chosen elements in the crash model's unit, if known.
     pub fn mean_thickness(&self) -> Option<f64> {
-        self.mean_thickness
-            .map(|thickness| thickness * self.settings.length_factor)
+        self.lengthened(self.mean_thickness)
+    }
+
+    /// A length of the file in the unit that its mesh is in.
+    pub fn lengthened(&self, length: Option<f64>) -> Option<f64> {
+        length.map(|length| length * self.settings.length_factor)
     }
 }
 

@@ -27,6 +27,15 @@ pub(super) fn resident_bytes() -> Option<usize> {
     Some(pages * PAGE)
 }
 
+/// Set at the end of a scope, also where a panic ends it: the thread that waits for it ends too.
+struct SetOnDrop<'a>(&'a AtomicBool);
+
+impl Drop for SetOnDrop<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
 /// What `work` returns, and the most memory that was in use meanwhile.
 pub(super) fn with_peak<T>(work: impl FnOnce() -> T) -> (T, Option<usize>) {
     let is_done = AtomicBool::new(false);
@@ -38,9 +47,8 @@ pub(super) fn with_peak<T>(work: impl FnOnce() -> T) -> (T, Option<usize>) {
                 std::thread::sleep(LOOK_EVERY);
             }
         });
-        let result = work();
-        is_done.store(true, Ordering::Relaxed);
-        result
+        let _done = SetOnDrop(&is_done);
+        work()
     });
     let peak = peak.into_inner();
     (result, (peak > 0).then_some(peak))

@@ -66,7 +66,9 @@ pub fn clean_up_on_signals() -> io::Result<()> {
 /// place in one step. Permissions of the old file are kept, links are followed. Devices and pipes
 /// are written directly.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), PipelineError> {
-    write_with(path, |file| file.write_all(bytes)).map_err(failed(path))
+    ReadyFile::new(path, |file| file.write_all(bytes))
+        .and_then(ReadyFile::take_place)
+        .map_err(failed(path))
 }
 
 /// [`write_file`] that ends soon after `monitor` is cancelled, the old content kept.
@@ -75,6 +77,30 @@ pub fn write_file_unless_cancelled(
     bytes: &[u8],
     monitor: &Monitor,
 ) -> Result<(), PipelineError> {
+    write_files_unless_cancelled(&[(path, bytes)], monitor)
+}
+
+/// Files that belong together: none takes the place of an old one before all of them are written and flushed, so that
+/// all keep their old content where one cannot be written, or `monitor` is cancelled.
+pub fn write_files_unless_cancelled(
+    files: &[(&Path, &[u8])],
+    monitor: &Monitor,
+) -> Result<(), PipelineError> {
+    let mut ready = Vec::new();
+    for &(path, bytes) in files {
+        ready.push((path, ready_unless_cancelled(path, bytes, monitor)?));
+    }
+    for (path, file) in ready {
+        file.take_place().map_err(failed(path))?;
+    }
+    Ok(())
+}
+
+fn ready_unless_cancelled(
+    path: &Path,
+    bytes: &[u8],
+    monitor: &Monitor,
+) -> Result<ReadyFile, PipelineError> {
     let write = |file: &mut File| {
         let is_flushed = bytes.len() > PIECE && file.metadata()?.is_file();
         for piece in bytes.chunks(PIECE) {
@@ -87,7 +113,7 @@ pub fn write_file_unless_cancelled(
         }
         monitor.check().map_err(io::Error::other)
     };
-    write_with(path, write).map_err(|error| match error.downcast::<Cancelled>() {
+    ReadyFile::new(path, write).map_err(|error| match error.downcast::<Cancelled>() {
         Ok(cancelled) => cancelled.into(),
         Err(error) => failed(path)(error),
     })
@@ -129,21 +155,38 @@ fn failed(path: &Path) -> impl Fn(io::Error) -> PipelineError {
     }
 }
 
-fn write_with(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
-    let path = followed(path)?;
-    let old = match fs::metadata(&path) {
-        Ok(old) if old.is_dir() => return Err(io::Error::other("it is a folder")),
-        Ok(old) if !old.is_file() => {
-            return write(&mut File::options().write(true).open(&path)?);
+/// A file that is written and flushed.
+enum ReadyFile {
+    /// A device or a pipe, which has the bytes already.
+    Direct,
+    /// A new file beside the path that it is for.
+    Beside(NamedTempFile, PathBuf),
+}
+
+impl ReadyFile {
+    fn new(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<Self> {
+        let path = followed(path)?;
+        let old = match fs::metadata(&path) {
+            Ok(old) if old.is_dir() => return Err(io::Error::other("it is a folder")),
+            Ok(old) if !old.is_file() => {
+                write(&mut File::options().write(true).open(&path)?)?;
+                return Ok(Self::Direct);
+            }
+            Ok(old) => Some(old),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+            Err(error) => return Err(error),
+        };
+        let beside = new_beside(&path, old.as_ref(), write)?;
+        Ok(Self::Beside(beside, path))
+    }
+
+    fn take_place(self) -> io::Result<()> {
+        if let Self::Beside(file, path) = self {
+            file.persist(&path).map_err(|error| error.error)?;
+            sync_folder(folder_of(&path));
         }
-        Ok(old) => Some(old),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => None,
-        Err(error) => return Err(error),
-    };
-    let beside = new_beside(&path, old.as_ref(), write)?;
-    beside.persist(&path).map_err(|error| error.error)?;
-    sync_folder(folder_of(&path));
-    Ok(())
+        Ok(())
+    }
 }
 
 /// A complete file in the folder of `path`, flushed to the disk; it goes when it is dropped.
@@ -240,11 +283,36 @@ mod tests {
             file.write_all(b"half of the n")?;
             Err(io::Error::from(io::ErrorKind::StorageFull))
         };
-        assert!(write_with(&path, full_disk).is_err());
+        assert!(ReadyFile::new(&path, full_disk).is_err());
         assert_eq!(fs::read(&path).unwrap(), b"old");
         let fresh = folder.path().join("b.k");
-        assert!(write_with(&fresh, full_disk).is_err());
+        assert!(ReadyFile::new(&fresh, full_disk).is_err());
         assert_eq!(names(folder.path()), ["a.k"], "nothing is left behind");
+    }
+
+    #[test]
+    fn of_files_that_belong_together_none_is_replaced_where_one_cannot_be_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let [deck, table] = ["deck.k", "table.k"].map(|name| folder.path().join(name));
+        let monitor = Monitor::silent();
+        let write = |bytes: &[u8]| {
+            let files: [(&Path, &[u8]); 2] = [(&deck, bytes), (&table, bytes)];
+            write_files_unless_cancelled(&files, &monitor)
+        };
+        write(b"old").unwrap();
+        assert_eq!(names(folder.path()), ["deck.k", "table.k"]);
+        fs::remove_file(&table).unwrap();
+        fs::create_dir(&table).unwrap();
+        assert!(matches!(write(b"new"), Err(PipelineError::Write { path, .. }) if path == table));
+        assert_eq!(fs::read(&deck).unwrap(), b"old");
+        fs::remove_dir(&table).unwrap();
+        write(b"new").unwrap();
+        assert_eq!(fs::read(&deck).unwrap(), b"new");
+        assert_eq!(
+            names(folder.path()),
+            ["deck.k", "table.k"],
+            "nothing is left behind"
+        );
     }
 
     #[test]

@@ -53,11 +53,7 @@ impl CommandLine<'_> {
         for (role, side) in self.sides.iter() {
             words.side(role, side);
         }
-        words.folders(self.read);
-        let limit = self.read.limit();
-        if limit != ReadOptions::USUAL_LIMIT {
-            words.option("read-limit", exact(limit));
-        }
+        words.reading(self.read);
         let PerRole { crash, stamped } = self.max_triangles;
         let is_common = crash == stamped;
         if !is_common {
@@ -145,7 +141,7 @@ impl MapCommandLine<'_> {
             }
             words.side(role, &side);
         }
-        words.folders(self.read);
+        words.reading(self.read);
         words.option("pose", pose_word(self.pose));
         for (_, pose) in self.further {
             words.option("pose", pose_word(pose));
@@ -248,9 +244,14 @@ impl Words {
         }
     }
 
-    fn folders(&mut self, read: &ReadOptions) {
+    /// How the files are read.
+    fn reading(&mut self, read: &ReadOptions) {
         for folder in &read.include_folders {
             self.option("include-folder", folder.display().to_string());
+        }
+        let limit = read.limit();
+        if limit != ReadOptions::USUAL_LIMIT {
+            self.option("read-limit", exact(limit));
         }
     }
 
@@ -353,6 +354,33 @@ mod tests {
         let written = line(&settings, &Similarity::identity());
         let expected = r"shapematch match 'my car.k' './-it'\''s.dynain' --crash-part 2001,2002 --stamped-length-factor 25.4 --stamped-triangles 2000 --method paper --allowance 0.1";
         assert_eq!(written, expected);
+    }
+
+    #[test]
+    fn the_limit_of_reading_is_said_where_it_is_not_the_usual_one() {
+        let read = ReadOptions::default().with_limit(12.5);
+        let selection = PartSelection::Sheet;
+        let side = |path| CommandSide {
+            path: Path::new(path),
+            selection: Some(&selection),
+            length_factor: 1.0,
+            units: None,
+        };
+        let line = |read: &ReadOptions| {
+            let command = MapCommandLine {
+                sides: PerRole::new(side("crash.k"), side("stamped.k")),
+                read,
+                pose: &Similarity::identity(),
+                further: &[],
+                options: &MapOptions::default(),
+                layers: (None, None, None),
+                stress_factors: &[],
+                stamped_law: None,
+            };
+            command.line()
+        };
+        assert!(line(&read).contains("--read-limit 12.5"), "{}", line(&read));
+        assert!(!line(&ReadOptions::default()).contains("--read-limit"));
     }
 
     #[test]

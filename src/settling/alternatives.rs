@@ -55,14 +55,13 @@ pub fn chosen_by_shape(
         Ok(refinement.closest(&pose)?.unwrap_or(pose))
     };
     let refined: Result<Vec<Similarity>, Cancelled> = near.par_iter().map(refine).collect();
-    let Judged { result, candidates } =
-        judged(context, (*found, None), &refined?, |pose, shape| {
-            if overhangs {
-                few.overhanging(pose, shape)
-            } else {
-                few.candidate(pose, shape)
-            }
-        })?;
+    let Judged { result, candidates } = judged(context, found, &refined?, |pose, shape| {
+        if overhangs {
+            few.overhanging(pose, shape)
+        } else {
+            few.candidate(pose, shape)
+        }
+    })?;
     // Of candidates with as many differences the first one scores best.
     let better = candidates.iter().filter(|other| other.beats(&result));
     let better = better.min_by_key(|other| other.n_differences);

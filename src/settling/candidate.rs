@@ -6,7 +6,6 @@ use super::context::PairContext;
 use crate::assess::borders::HOLES_THAT_HOLD;
 use crate::assess::contact::{ContactSearch, FEW_NODES, Meeting};
 use crate::assess::shape::{OVERHANGS, only_overhangs};
-use crate::assess::statements::Outlines;
 use crate::assess::tolerance::{Distances, UNREMARKABLE};
 use crate::assess::{ShapeReason, ShapeStatement};
 use crate::geometry::Similarity;
@@ -90,26 +89,21 @@ pub(super) struct Judged {
 }
 
 /// The result and each of the other poses with what speaks against it; `candidate` makes that of the comparison of the
-/// shapes, which may be known of the result. Where the outlines lie together under no pose and are no evidence under
+/// shapes. Where the outlines lie together under no pose and are no evidence under
 /// one of them, they are none under the others either: that they lie beside others by chance speaks against none of
 /// them.
 pub(super) fn judged(
     context: &PairContext<'_>,
-    (result, known): (Similarity, Option<ShapeStatement>),
+    result: &Similarity,
     others: &[Similarity],
     candidate: impl Fn(Similarity, &ShapeStatement) -> Candidate + Sync,
 ) -> Result<Judged, Cancelled> {
-    let shape = |pose: &Similarity, outlines| {
+    let of = |pose: &Similarity| {
         context.check()?;
-        Ok(context.shape(pose, outlines))
+        Ok(candidate(*pose, &context.shape(pose)))
     };
-    let of_result = || {
-        let known = known.map_or_else(|| shape(&result, Outlines::Compared), Ok);
-        Ok(candidate(result, &known?))
-    };
-    let of_other = |pose: &Similarity| Ok(candidate(*pose, &shape(pose, Outlines::Compared)?));
-    let of_others = || others.par_iter().map(of_other).collect();
-    let (result, others): (Result<_, _>, Result<Vec<_>, _>) = rayon::join(of_result, of_others);
+    let of_others = || others.par_iter().map(of).collect();
+    let (result, others): (Result<_, _>, Result<Vec<_>, _>) = rayon::join(|| of(result), of_others);
     let mut all = others?;
     all.insert(0, result?);
     let lie_together = all.iter().any(Candidate::has_outlines_together);
@@ -117,10 +111,12 @@ pub(super) fn judged(
     if !lie_together && !all.iter().all(are_evidence) {
         let others = all.par_iter_mut().filter(|other| are_evidence(other));
         others.try_for_each(|other| {
+            context.check()?;
+            let shape = context.shape_without_outlines(&other.pose);
             *other = Candidate {
                 outlines_are_no_evidence: true,
                 off: None,
-                ..candidate(other.pose, &shape(&other.pose, Outlines::LeftOut)?)
+                ..candidate(other.pose, &shape)
             };
             Ok(())
         })?;

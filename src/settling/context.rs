@@ -1,6 +1,6 @@
 //! What all steps are given: both parts, what they are compared by, and the request to cancel.
 
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use crate::assess::borders::BorderComparison;
 use crate::assess::contact::ContactSearch;
@@ -22,6 +22,8 @@ pub struct PairContext<'a> {
     corners: [Point3; 8],
     /// The poses under which holes lie on like ones, found when first asked for.
     pub(super) on_holes: OnceLock<Vec<Similarity>>,
+    /// The statements made so far, by pose: several steps ask about the same one.
+    shapes: Mutex<Vec<(Similarity, ShapeStatement)>>,
 }
 
 impl<'a> PairContext<'a> {
@@ -38,6 +40,7 @@ impl<'a> PairContext<'a> {
             monitor,
             corners: source.mesh().aabb().corners(),
             on_holes: OnceLock::new(),
+            shapes: Mutex::default(),
         }
     }
 
@@ -71,9 +74,21 @@ impl<'a> PairContext<'a> {
         BorderComparison::new(self.surfaces(), scale, reach)
     }
 
-    /// The statement about the shape under a pose.
-    pub(super) fn shape(&self, pose: &Similarity, outlines: Outlines) -> ShapeStatement {
-        shape_statement(self.surfaces(), pose, self.settings, outlines)
+    /// The statement about the shape under a pose, made when first asked for.
+    pub(super) fn shape(&self, pose: &Similarity) -> ShapeStatement {
+        let shapes = || self.shapes.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = shapes().iter().find(|(of, _)| of == pose).cloned();
+        if let Some((_, shape)) = known {
+            return shape;
+        }
+        let shape = shape_statement(self.surfaces(), pose, self.settings, Outlines::Compared);
+        shapes().push((*pose, shape.clone()));
+        shape
+    }
+
+    /// The same with the outlines left out.
+    pub(super) fn shape_without_outlines(&self, pose: &Similarity) -> ShapeStatement {
+        shape_statement(self.surfaces(), pose, self.settings, Outlines::LeftOut)
     }
 
     /// A pose moved step by step: `next` gives the next pose, and the motion that is none any more. It ends there, where

@@ -56,10 +56,9 @@ pub fn placed_on_copies(
     let settled: Result<Vec<Option<Similarity>>, Cancelled> =
         first.par_iter().map(settle).collect();
     let settled: Vec<Similarity> = settled?.into_iter().flatten().collect();
-    let Judged { result, candidates } =
-        judged(context, (*found, None), &settled, |pose, shape| {
-            few.candidate(pose, shape)
-        })?;
+    let Judged { result, candidates } = judged(context, found, &settled, |pose, shape| {
+        few.candidate(pose, shape)
+    })?;
     let fits = |copy: &&Candidate| copy.meets_as_much_as(&result) && !result.beats(copy);
     let copies: Vec<&Candidate> = candidates.iter().filter(fits).collect();
     let better = copies.iter().filter(|copy| copy.beats(&result));

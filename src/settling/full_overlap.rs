@@ -12,7 +12,6 @@ use crate::assess::contact::{ContactSearch, FEW_NODES};
 use crate::assess::evidence::EvidenceSearch;
 use crate::assess::fit::Fit;
 use crate::assess::shape::OVERHANGS;
-use crate::assess::statements::Outlines;
 use crate::geometry::Similarity;
 use crate::monitor::Cancelled;
 use crate::registration::{Extent, MatchOutcome, same_pose};
@@ -45,9 +44,8 @@ pub fn placed_as_a_whole(
     if !outcome.rivals_sought || found.is_mirrored() || found.scale != 1.0 {
         return Ok(None);
     }
-    let shape = context.shape(found, Outlines::Compared);
     let has_nothing_open = |result: &Candidate| result.met >= OVERHANGS && !result.differs();
-    if has_nothing_open(&Candidate::at(*found, &shape)) {
+    if has_nothing_open(&Candidate::at(*found, &context.shape(found))) {
         return Ok(None);
     }
     let distances = context.distances(1.0);
@@ -55,7 +53,7 @@ pub fn placed_as_a_whole(
     let far = ASIDE * distances.tolerance.springback;
     poses.retain(|pose| context.displacement(pose, found) > far);
     let few = FewPlaces::new(context, 1.0);
-    let moved = judged(context, (*found, Some(shape)), &poses, |pose, shape| {
+    let moved = judged(context, found, &poses, |pose, shape| {
         few.candidate(pose, shape)
     })?;
     if has_nothing_open(&moved.result) {

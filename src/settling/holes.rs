@@ -7,7 +7,6 @@ use super::chosen_pose::ChosenPose;
 use super::context::PairContext;
 use super::refine_with_borders::{Least, Refinement};
 use crate::assess::contact::MAX_NODES;
-use crate::assess::statements::Outlines;
 use crate::assess::tolerance::is_source_smaller;
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
@@ -35,15 +34,14 @@ pub fn placed_by_holes(
         is_piece(target, source)
     };
     let is_open = |result: &Candidate| is_piece && result.differs() || result.n_alone > 0;
-    let shape = context.shape(found, Outlines::Compared);
-    if !is_open(&Candidate::at(*found, &shape)) {
+    if !is_open(&Candidate::at(*found, &context.shape(found))) {
         return Ok(None);
     }
     let refinement = Refinement::new(context, 1.0, MAX_NODES);
     let refine = |pose: &Similarity| Ok(refinement.refined(pose, Least::Any)?.unwrap_or(*pose));
     let found_on_holes = poses(context)?.par_iter();
     let refined: Result<Vec<Similarity>, Cancelled> = found_on_holes.map(refine).collect();
-    let on_holes = judged(context, (*found, Some(shape)), &refined?, |pose, shape| {
+    let on_holes = judged(context, found, &refined?, |pose, shape| {
         Candidate::at(pose, shape)
     })?;
     let is_better = |other: &Candidate, result: &Candidate| {

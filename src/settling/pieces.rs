@@ -9,7 +9,6 @@ use super::holes::found_by;
 use super::refine_with_borders::Refinement;
 use crate::assess::contact::{MAX_NODES, Meeting};
 use crate::assess::shape::OVERHANGS;
-use crate::assess::statements::Outlines;
 use crate::geometry::Similarity;
 use crate::monitor::Cancelled;
 use crate::registration::{MatchOutcome, WideSearch};
@@ -44,16 +43,15 @@ pub fn placed_by_pieces(
     if own.gap <= ON_EACH_OTHER * distances.noise && own.share >= ENOUGH {
         return Ok(None);
     }
-    let shape = context.shape(found, Outlines::Compared);
     let is_open = |result: &Candidate| result.met < OVERHANGS || result.differs();
-    if !is_open(&Candidate::at(*found, &shape)) {
+    if !is_open(&Candidate::at(*found, &context.shape(found))) {
         return Ok(None);
     }
     let poses = worth_refining(context, &few, own)?;
     let refinement = Refinement::new(context, found.scale, MAX_NODES);
     let refine = |pose: &Similarity| Ok(refinement.closest(pose)?.unwrap_or(*pose));
     let refined: Result<Vec<Similarity>, Cancelled> = poses.par_iter().map(refine).collect();
-    let on_pieces = judged(context, (*found, Some(shape)), &refined?, |pose, shape| {
+    let on_pieces = judged(context, found, &refined?, |pose, shape| {
         few.overhanging(pose, shape)
     })?;
     let is_better = |other: &Candidate, result: &Candidate| {

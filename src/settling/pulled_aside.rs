@@ -49,12 +49,9 @@ pub fn pulled_aside(
     let Judged {
         result: before,
         candidates,
-    } = judged(
-        context,
-        (*by_surfaces, None),
-        &[*by_borders],
-        |pose, shape| few.candidate(pose, shape),
-    )?;
+    } = judged(context, by_surfaces, &[*by_borders], |pose, shape| {
+        few.candidate(pose, shape)
+    })?;
     let [after] = &candidates[..] else {
         return Ok(None);
     };

@@ -542,8 +542,8 @@ impl eframe::App for Shell {
 /// What follows from what was saved.
 fn from_autosave(event: AutosaveEvent<Box<Document>>) -> Vec<Command> {
     match event {
-        AutosaveEvent::Saved(path, document) => {
-            vec![ProjectCommand::Written(path, document).into()]
+        AutosaveEvent::Saved(path, saved_at, document) => {
+            vec![ProjectCommand::Written(path, saved_at, document).into()]
         }
         AutosaveEvent::SaveFailed(reason) => {
             let is_elsewhere = false;

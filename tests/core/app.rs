@@ -2364,6 +2364,15 @@ fn a_level_remembers_its_match_until_a_part_changes() {
     let reduced = *window.state.level_result(Some(60)).unwrap();
     // Both matches of this window give the same pose.
     assert!(window.state.distance_to_full(&reduced).unwrap() < 1e-12);
+    // A file that is read again is full at first, whatever level is wanted of it.
+    window.apply(FileCommand::Reload(Role::Stamped));
+    let again = window.part(Role::Stamped);
+    assert_eq!(
+        (again.wanted_level, again.level.is_none()),
+        (Some(60), true)
+    );
+    window.apply(MatchCommand::Run);
+    assert!(window.state.level_result(Some(60)).is_none());
     window.open("metres.k", Role::Stamped);
     assert!(window.state.level_result(Some(60)).is_none());
 }

@@ -80,7 +80,7 @@ fn a_session_that_was_saved_is_offered_only_after_another_step() {
     of.save(path, None, project("/a/b.k"), 7);
     let event = of.wait_for_event(LONG);
     assert!(
-        matches!(event, Some(AutosaveEvent::Saved(_, 7))),
+        matches!(event, Some(AutosaveEvent::Saved(_, _, 7))),
         "{event:?}"
     );
     // As far as others see, its program may be killed now.
@@ -147,7 +147,7 @@ fn a_project_is_never_saved_over_one_of_its_parts() {
     let beside = folder.path().join("beside.shapematch");
     of.save(beside.clone(), None, project(deck.to_str().unwrap()), 7);
     let event = of.wait_for_event(LONG);
-    assert!(matches!(event, Some(AutosaveEvent::Saved(path, 7)) if path == beside));
+    assert!(matches!(event, Some(AutosaveEvent::Saved(path, _, 7)) if path == beside));
 }
 
 /// Two windows with one project: the second one to save is told, and what the first saved stays.

@@ -516,7 +516,7 @@ fn wrong_usage_and_missing_files_have_their_own_status() {
         "{message}"
     );
     let unknown = shapematch(&["bench", "--mapping", "--only", "no-such-part"]);
-    assert_eq!(unknown.status.code(), Some(1));
+    assert_eq!(unknown.status.code(), Some(2));
     let message = text(&unknown.stderr);
     assert!(
         message.contains("floor") && message.contains("speed"),

@@ -55,6 +55,48 @@ fn a_match_of_a_whole_model_tries_the_most_alike_parts_alone() {
     assert_eq!(used.iter().copied().collect::<Vec<_>>(), [asked.unwrap()]);
 }
 
+/// A sheet that the model keeps as two parts which share their nodes, as a tailored blank.
+#[test]
+fn parts_that_share_nodes_are_found_as_one_sheet() {
+    let folder = tempfile::tempdir().unwrap();
+    write_bracket(folder.path(), SampleVariant::WholeModel);
+    let window = Window::with_files_of(folder.path(), really);
+    let id = window.state.part_question().unwrap().single().unwrap().id;
+    let path = window.part(Role::Crash).loaded.path.clone();
+    let deck = std::fs::read_to_string(&path).unwrap();
+    let (own, other) = (format!("{id:>8}"), format!("{:>8}", 77));
+    let of_part = |line: &&str| line.len() > 40 && line.get(8..16) == Some(&own[..]);
+    let n_shells = deck.lines().filter(of_part).count();
+    assert!(n_shells > 100, "{n_shells}");
+    let mut n_met = 0;
+    let mut split = String::new();
+    for line in deck.lines() {
+        let is_second_half = of_part(&line) && {
+            n_met += 1;
+            n_met > n_shells / 2
+        };
+        split += &match line.strip_prefix("*NODE") {
+            Some("") => format!("*PART\nsecond half\n        77{id:>10}         1\n*NODE"),
+            _ if is_second_half => format!("{}{other}{}", &line[..8], &line[16..]),
+            _ => line.to_owned(),
+        };
+        split.push('\n');
+    }
+    std::fs::write(&path, split).unwrap();
+    let mut window = Window::with_files_of(folder.path(), really);
+    window.act(Action::MatchOrStop);
+    let used: Vec<u64> = window
+        .part(Role::Crash)
+        .facts
+        .used
+        .iter()
+        .copied()
+        .collect();
+    assert_eq!(used, [77, id]);
+    let result = window.state.document.current_result().expect("a result");
+    assert_eq!(result.run.assessment.verdict, Verdict::Good);
+}
+
 /// Finds no crash part, as a search that is stopped at once.
 fn without_parts(kind: JobKind) -> Result<JobOutput, String> {
     match kind {

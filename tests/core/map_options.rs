@@ -112,6 +112,28 @@ fn elements_without_values_get_the_default_thickness_that_was_chosen() {
     }
 }
 
+/// The figures are those of the thickness that is written, on both sides.
+#[test]
+fn a_thickness_factor_counts_in_every_figure() {
+    let strip = Strip::new();
+    let options = ["--identity", "--thickness-scale", "2", "--json", "m.json"];
+    let output = strip.map(&[&options[..], &["--report", "m.html"]].concat());
+    assert!(output.status.success(), "{}", errors(&output));
+    assert_eq!(strip.thicknesses(), [(101, 1.8), (102, 1.8)]);
+    let record = std::fs::read_to_string(strip.path("m.json")).unwrap();
+    let record: serde_json::Value = serde_json::from_str(&record).unwrap();
+    for side in ["crash", "stamped"] {
+        let mean = record["thickness"][side]["mean"].as_f64().unwrap();
+        assert!((mean - 1.8).abs() < 1e-12, "{side}: {mean}");
+    }
+    // Only the elements that have it are compared with their section.
+    let warned = errors(&output);
+    let told = "the mapped thickness is 1.80 times that of the crash elements";
+    assert!(warned.contains(told), "{warned}");
+    let page = std::fs::read_to_string(strip.path("m.html")).unwrap();
+    assert!(page.contains("1.80") && !page.contains("0.900"));
+}
+
 #[test]
 fn the_nearest_thickness_is_that_along_the_mesh() {
     // Four columns of three squares, of which the stamped part has two, with a thickness for each row.

@@ -367,7 +367,7 @@ fn a_given_pose_of_a_file_in_another_unit_is_asked_about() {
     let pair = Pair::new(&crash(2, ""), &sheet);
     let told = pair.map(&["--quantities", "thickness"]);
     assert!(
-        errors(&told).contains("--stamped-length-factor 1000 would convert it"),
+        errors(&told).contains("--stamped-length-factor 1000.0 would convert it"),
         "{}",
         errors(&told)
     );

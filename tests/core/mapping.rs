@@ -1200,8 +1200,8 @@ fn mapping_back_returns_what_was_there() {
     let mapped = map(&[placed], &onto, &full(), &monitor).unwrap();
     let back = map_back(&[placed], &onto, &mapped, &full(), &monitor).unwrap();
     assert!(back.coverage > 0.99);
-    assert!(back.thickness_rms < 1e-12);
-    assert!(back.plastic_rms < 0.03 * back.plastic_range, "{back:?}");
+    assert!(back.thickness.rms < 1e-12);
+    assert!(back.plastic.rms < 0.03 * back.plastic.range, "{back:?}");
 }
 
 #[test]

@@ -91,7 +91,7 @@ fn save(window: &mut Window, path: &Path) {
         } = effect
         {
             project.write(&path).unwrap();
-            window.apply(ProjectCommand::Written(path, document));
+            window.apply(ProjectCommand::Written(path, project.saved_at, document));
             n_written += 1;
         }
     }
@@ -827,12 +827,62 @@ fn the_command_line_runs_and_describes_a_project() {
     ] {
         assert!(told.contains(words), "{words}: {told}");
     }
+    // Levels are taken in place of those of the project; what it has its own of is refused.
+    let levels = program(&["match", project, "--crash-triangles", "300", "--json", "-"]);
+    let record: serde_json::Value = serde_json::from_str(&levels).unwrap();
+    let used = |role| record["parameters"][role].as_u64().unwrap();
+    assert!((200..=300).contains(&used("crash_triangles")), "{levels}");
+    assert!((301..=400).contains(&used("stamped_triangles")), "{levels}");
+    for option in [
+        "--crash-part=1",
+        "--stamped-units=mm",
+        "--crash-length-factor=25.4",
+        "--include-folder=.",
+        "--read-limit=2",
+        "--method=paper",
+    ] {
+        let refused = std::process::Command::new(env!("CARGO_BIN_EXE_shapematch"))
+            .args(["match", project, option])
+            .output()
+            .unwrap();
+        assert_eq!(refused.status.code(), Some(2), "{option}");
+        let said = String::from_utf8_lossy(&refused.stderr);
+        let name = option.split('=').next().unwrap();
+        assert!(said.contains(&format!("{name} is for two files")), "{said}");
+    }
     let both = std::process::Command::new(env!("CARGO_BIN_EXE_shapematch"))
         .args(["match", crash.to_str().unwrap()])
         .output()
         .unwrap();
     assert!(!both.status.success());
     assert!(String::from_utf8_lossy(&both.stderr).contains("project"));
+}
+
+/// A recovered session still knows which state of the project's file it goes back to, so that what another window
+/// has saved there since is not written over unasked.
+#[test]
+fn a_recovered_session_knows_when_its_project_was_saved() {
+    let (folder, [crash, stamped, path]) = folder();
+    let mut window = worked(&crash, &stamped);
+    save(&mut window, &path);
+    let saved_at = Project::read(&path).unwrap().0.saved_at;
+    window.apply(MoveCommand::Flip(Axis::X));
+    let session = folder.path().join("session.shapematch");
+    window
+        .state
+        .to_project(saved_at + 60)
+        .write(&session)
+        .unwrap();
+    let mut recovered = Window::real();
+    recovered.apply(ProjectCommand::Restore(session));
+    assert_eq!(recovered.state.project_path(), Some(&path));
+    recovered.effects.clear();
+    recovered.apply(ProjectCommand::Save);
+    let replaces = recovered.effects.iter().find_map(|effect| match effect {
+        Effect::WriteProject { replaces, .. } => Some(*replaces),
+        _ => None,
+    });
+    assert_eq!(replaces, Some(Some(saved_at)));
 }
 
 /// A pose that no match stands for is not what a new match gives; one that was refined is.

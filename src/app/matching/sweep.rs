@@ -76,17 +76,19 @@ impl MatchState {
         &mut self,
         work: &mut Work<'_>,
         table: Arc<Sweep>,
-        took: Duration,
+        (took, was_stopped): (Duration, bool),
     ) {
         self.sweep = Some(OfParts::new(work.document, table.into()));
         self.sweep_so_far = None;
         work.follow(FollowUp::SweepEnded);
-        work.log_at(
-            NoticeLevel::Success,
-            LogStep::Sweep,
-            None,
-            "sweep finished",
-            Some(took),
-        );
+        let (level, text) = if was_stopped {
+            (
+                NoticeLevel::Info,
+                "sweep stopped; the rows measured so far are kept",
+            )
+        } else {
+            (NoticeLevel::Success, "sweep finished")
+        };
+        work.log_at(level, LogStep::Sweep, None, text, Some(took));
     }
 }

@@ -4,14 +4,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::{Matrix3, Point3, Rotation, Similarity, Vector3};
 
-/// One of three axes.
+/// One of the three axes of an [`AxisFrame`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Axis {
-    /// X axis of the crash deck.
+    /// X axis of the frame.
     X,
-    /// Y axis of the crash deck.
+    /// Y axis of the frame.
     Y,
-    /// Z axis of the crash deck.
+    /// Z axis of the frame.
     Z,
 }
 
@@ -51,7 +51,7 @@ impl AxisFrame {
     /// All, in the order they are cycled through.
     pub const ALL: [Self; 3] = [Self::Global, Self::Part, Self::View];
 
-    /// Name of the motion in the window.
+    /// Its name in the window.
     pub fn label(self) -> &'static str {
         match self {
             Self::Global => "global",

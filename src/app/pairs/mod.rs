@@ -41,7 +41,7 @@ impl PickKind {
         }
     }
 
-    /// The reason as a sentence for the window.
+    /// The kind in words, with the node's number where it is known.
     pub fn words(self) -> String {
         match self {
             Self::Node(Some(id)) => format!("node {id}"),

@@ -177,11 +177,13 @@ impl Document {
     /// O(parts · log parts).
     fn likeness_to(&self, to: LikeWhat) -> Option<Likeness> {
         let given = self.signature(to)?;
-        let facts = &self.part(to.role().other())?.facts;
+        let part = self.part(to.role().other())?;
+        let facts = &part.facts;
         let mut of_part = BTreeMap::new();
         for row in &facts.parts {
             let moments = facts.moments.get(&row.id);
-            if let Some(signature) = moments.and_then(|m| m.signature(row.thickness)) {
+            let thickness = part.loaded.lengthened(row.thickness);
+            if let Some(signature) = moments.and_then(|m| m.signature(thickness)) {
                 of_part.insert(row.id, given.likeness(&signature));
             }
         }
@@ -197,16 +199,18 @@ impl Document {
     }
 
     fn signature(&self, what: LikeWhat) -> Option<Signature> {
-        let facts = &self.part(what.role())?.facts;
+        let part = self.part(what.role())?;
+        let facts = &part.facts;
         match what {
             LikeWhat::Used(_) => {
                 let used = facts.used.iter().filter_map(|id| facts.moments.get(id));
                 let together = used.fold(Moments::default(), |sum, m| sum.and(m));
                 together.signature(facts.thickness)
             }
-            LikeWhat::Part(part) => {
-                let row = facts.parts.iter().find(|row| row.id == part.id)?;
-                facts.moments.get(&part.id)?.signature(row.thickness)
+            LikeWhat::Part(of) => {
+                let row = facts.parts.iter().find(|row| row.id == of.id)?;
+                let thickness = part.loaded.lengthened(row.thickness);
+                facts.moments.get(&of.id)?.signature(thickness)
             }
         }
     }

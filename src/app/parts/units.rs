@@ -88,19 +88,19 @@ impl Document {
         self.units().lengths
     }
 
-    /// Unit of the stresses, if a file says it.
-    pub fn stress_unit(&self) -> Option<&'static str> {
-        let system = Role::ALL
-            .into_iter()
-            .find_map(|role| self.part(role)?.loaded.units()?.units.system);
+    /// Unit of the stresses of a part, which stay in that of its file. What only the other file says is taken for
+    /// both, as a mapping does.
+    pub fn stress_unit(&self, role: Role) -> Option<&'static str> {
+        let said = |role| self.part(role)?.loaded.units()?.units.system;
+        let system = said(role).or_else(|| said(role.other()));
         system.map(|system| system.stress())
     }
 
-    /// The unit a forming value is shown in, with `None` of a length; `None` where it has none or it is not
+    /// The unit a forming value of a part is shown in, with `None` of a length; `None` where it has none or it is not
     /// known.
-    pub fn unit_of(&self, value: Option<FormingValue>) -> Option<&'static str> {
+    pub fn unit_of(&self, role: Role, value: Option<FormingValue>) -> Option<&'static str> {
         let unit = match value {
-            Some(value) if value.is_stress() => self.stress_unit()?,
+            Some(value) if value.is_stress() => self.stress_unit(role)?,
             Some(FormingValue::Thinning) => "%",
             Some(_) => return None,
             None => self.unit_suffix().trim(),

@@ -40,7 +40,10 @@ impl ProjectState {
             ProjectCommand::SaveAs => self.ask_save(work.document),
             // The dialog has asked about the file that is there.
             ProjectCommand::Write(path) => write(work, path, None),
-            ProjectCommand::Written(path, document) => self.written(work, path, *document),
+            ProjectCommand::Written(path, saved_at, document) => {
+                self.opened_at = Some(saved_at);
+                self.written(work, path, *document)
+            }
             ProjectCommand::NotWritten => {
                 self.quits_when_saved = false;
                 Vec::new()
@@ -103,8 +106,6 @@ impl ProjectState {
         let now = work.unix_now();
         work.settings.remember_path(&path, now);
         self.file = Some((path, project));
-        // When that was is known where it was written.
-        self.opened_at.get_or_insert(0);
         if std::mem::take(&mut self.quits_when_saved) {
             work.follow(FollowUp::Quit);
         }

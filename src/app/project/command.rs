@@ -27,8 +27,8 @@ pub enum ProjectCommand {
     SaveAs,
     /// Write the project there.
     Write(PathBuf),
-    /// The shell wrote this state of the work.
-    Written(PathBuf, Box<Document>),
+    /// The shell wrote this state of the work, at a time in seconds since 1970.
+    Written(PathBuf, u64, Box<Document>),
     /// The user closed the dialog.
     NotWritten,
     /// The shell could not write.

@@ -26,7 +26,8 @@ use crate::role::{PerRole, Role};
 pub struct ProjectState {
     /// The file opened or saved last, and the number of the project in it.
     file: Option<(PathBuf, u64)>,
-    /// When the project that was opened last had been saved, in seconds since 1970.
+    /// When the file was saved as it was opened or written here last, in seconds since 1970; `None` for a recovered
+    /// session of a program that did not keep it.
     opened_at: Option<u64>,
     /// Sessions of the last runs, newest first.
     pub sessions: Vec<RecoveredSession>,

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
+use serde_json::Value;
+
 use super::window::WindowEntry;
 use crate::app::{
     Action, AppState, Dialog, Document, Effect, Further, LogStep, Mapping, MatchResult,
@@ -271,12 +273,10 @@ impl AppState {
     fn file_project(&mut self, request: ProjectRequest, project: &Project) -> Vec<Effect> {
         self.project.others = project.others.clone();
         if request.is_autosave {
-            let path = project.window.as_ref().and_then(|window| {
-                let path = window.get("project")?.as_str()?;
-                Some(PathBuf::from(path))
-            });
+            let kept = |name| project.window.as_ref()?.get(name);
+            let path = kept("project").and_then(|path| Some(PathBuf::from(path.as_str()?)));
             self.project.file = path.map(|path| (path, self.document.project));
-            self.project.opened_at = None;
+            self.project.opened_at = kept("project_saved_at").and_then(Value::as_u64);
             self.project.saved = None;
             // From here on this run keeps it.
             return self.project.dismiss_recovery();

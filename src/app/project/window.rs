@@ -19,6 +19,8 @@ use crate::role::{PerRole, Role};
 pub(in crate::app) struct WindowEntry {
     /// Where the project itself is, for an autosaved session.
     pub project: Option<PathBuf>,
+    /// When that file was saved as the session knows it, in seconds since 1970.
+    pub project_saved_at: Option<u64>,
     pub cameras: PerRole<Camera>,
     pub are_linked: bool,
     pub orbit_style: OrbitStyle,
@@ -70,6 +72,7 @@ impl WindowEntry {
         let view = &state.view;
         Self {
             project: state.project_path().cloned(),
+            project_saved_at: state.project.opened_at,
             cameras: view.cameras,
             are_linked: view.are_linked,
             orbit_style: view.orbit_style,

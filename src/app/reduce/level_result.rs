@@ -7,7 +7,7 @@ use crate::app::{AppState, Document, OfParts};
 use crate::geometry::Similarity;
 use crate::pipeline::match_parts::MatchRun;
 use crate::pipeline::sweep::Sweep;
-use crate::role::Role;
+use crate::role::{PerRole, Role};
 
 /// The result of a match that searched on one level.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,17 +43,14 @@ impl AppState {
 impl ReduceState {
     /// Remembers a match by the level it searched on; parts at two different levels are no level.
     pub(in crate::app) fn keep_match_level(&mut self, document: &Document, run: &MatchRun) {
-        let wanted = |role| document.part(role).map(|part| part.wanted_level);
-        let levels = [wanted(Role::Crash), wanted(Role::Stamped)];
-        let max_triangles = match levels {
-            [Some(None), Some(None)] => run.recipe.max_triangles,
-            [Some(a), Some(b)] if a == b => a,
-            _ => return,
-        };
+        let PerRole { crash, stamped } = run.max_triangles;
+        if crash != stamped {
+            return;
+        }
         self.keep_level(
             document,
             LevelResult {
-                max_triangles,
+                max_triangles: crash,
                 crash_from_stamped: run.crash_from_stamped,
                 rmse: Some(run.assessment.coverage.rmse()),
                 took: Duration::try_from_secs_f64(run.times.total_ms / 1e3).unwrap_or_default(),

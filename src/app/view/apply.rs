@@ -134,8 +134,7 @@ impl ViewState {
         self.set_camera(role, camera);
         // What was seen whole is seen whole from there too.
         if is_whole {
-            let room = self.kept_room(role, scene);
-            self.refit(role, &room, scene);
+            self.fit_again(role, scene);
         }
     }
 
@@ -163,11 +162,12 @@ impl ViewState {
         }
     }
 
-    /// The room that a fitted window's picture is fitted into again.
-    fn kept_room(&self, role: Role, scene: &Scene<'_>) -> ViewRoom {
+    /// Fits a fitted window again, with the place for a legend that it was fitted with.
+    fn fit_again(&mut self, role: Role, scene: &Scene<'_>) {
         let room = self.room(role, scene);
         let fitted = self.fitted.get(role).as_ref();
-        fitted.map_or(room, |fitted| room.keeping_legend_of(&fitted.room))
+        let room = fitted.map_or(room, |fitted| room.keeping_legend_of(&fitted.room));
+        self.refit(role, &room, scene);
     }
 
     /// Takes over the shape of a window and what lies over it; what was seen whole stays so. A legend that comes up
@@ -176,11 +176,9 @@ impl ViewState {
     fn set_room(&mut self, role: Role, room: ViewRoom, scene: &Scene<'_>) {
         let before = std::mem::replace(self.rooms.get_mut(role), room);
         let of = self.camera_of(role);
-        if room.has_legend_where_free(&before) && self.is_as_close_as_fitted(of) {
-            let room = self.kept_room(of, scene);
-            self.refit(of, &room, scene);
-        } else {
-            self.keep_whole(role, scene);
+        let covers_part = room.has_legend_where_free(&before) && self.is_as_close_as_fitted(of);
+        if covers_part || self.is_fitted(of) {
+            self.fit_again(of, scene);
         }
     }
 
@@ -188,8 +186,7 @@ impl ViewState {
     pub(in crate::app) fn keep_whole(&mut self, role: Role, scene: &Scene<'_>) {
         let of = self.camera_of(role);
         if self.is_fitted(of) {
-            let room = self.kept_room(of, scene);
-            self.refit(of, &room, scene);
+            self.fit_again(of, scene);
         }
     }
 

@@ -1,7 +1,7 @@
 //! Does one part have a bead, an emboss or a dent that the other lacks? It may be too small to show in the figures of
 //! most of the area.
 
-use std::cell::LazyCell;
+use std::cell::OnceCell;
 
 use crate::assess::contact::Contact;
 use crate::assess::evidence::PoseEvidence;
@@ -14,11 +14,16 @@ use crate::search::PointTree;
 
 /// Places that lie beside each other and differ by as much are no noise from this number on.
 const LEAST_PLACES: usize = 5;
+/// Nodes of the other part that must say so too where elements may have cut edges short.
+const LEAST_SEEN: usize = 2;
 /// Places lie beside each other within so many times the size of what they stand for.
 const BESIDE: f64 = 1.7;
 /// What reaches an outline over less than this share of how far it reaches inward is a bead that runs out there. What
 /// reaches it over more is an end, and springback bends ends most: of them as much is accepted as of the whole part.
 const LEAST_OF_END: f64 = 0.5;
+
+/// More nodes that lie far apart are no local difference: the places show them.
+const MOST_FAR: usize = 4000;
 
 /// Elements cut narrow beads and the edges of wide ones short. A group that is not so many edges wide may be that:
 /// edges of the mesh that the places were measured against, because the places themselves are nodes, which lie on the
@@ -54,9 +59,23 @@ struct Group<'a, 'b> {
     high: Point3,
 }
 
+/// A group of places that lie apart by more than a limit.
+#[derive(Debug, Clone, Copy)]
+struct Difference {
+    by: f64,
+    limit: f64,
+    at: Point3,
+    is_end: bool,
+}
+
+/// Where a node lies off the other part, and by how much.
+type Off = (Point3, f64);
+
 /// The largest group of neighbouring places at which what neither bends nor facets explain exceeds the tolerance to
 /// one side, at an end that of springback, and which elements cutting short does not explain either. A piece that lies
-/// too far from its counterpart to meet it counts too.
+/// too far from its counterpart to meet it counts too. The places are nodes of the smaller part; where all nodes were
+/// measured, those of either part that lie far apart are places too, because a fine mesh has more nodes than are looked
+/// at, and an element of the smaller part may span a bead of the larger one.
 /// O(nodes that meet nothing · log triangles + k² + (k + outlines) · log outlines) for k places beyond the limit, and
 /// O(nodes of the larger part) where a group is narrow.
 pub(super) fn local_difference(
@@ -64,95 +83,171 @@ pub(super) fn local_difference(
     fit: &Fit,
     tolerance: &ShapeTolerance,
 ) -> Option<ShapeReason> {
-    let contacts = &evidence.contacts;
-    let displaced = evidence.displaced();
-    let left_there = displaced.iter().map(|place| fit.left_at(place, contacts));
-    let places = contacts.list.iter().zip(fit.left.iter().copied());
-    let places = places.map(|(contact, left)| (contact, left, true));
-    let places = places.chain(
-        displaced
-            .iter()
-            .zip(left_there)
-            .map(|(p, left)| (p, left, false)),
-    );
-    let beyond = places.filter(|(_, left, _)| left.abs() > tolerance.remainder);
-    let beyond = beyond.map(|(contact, left, meets)| Apart {
-        contact,
-        left,
-        meets,
-        size: (contact.weight * contacts.nodes_per_place).sqrt(),
-    });
-    let beyond: Vec<Apart> = beyond.collect();
-    if beyond.len() < LEAST_PLACES {
-        return None;
-    }
-    let outlines = LazyCell::new(|| PointTree::build(outlines(evidence)));
-    let groups = groups(&beyond).into_iter();
-    let groups = groups.filter(|group| group.places.len() >= LEAST_PLACES);
-    let found = groups.filter_map(|group| {
-        let is_end = group.is_end(&outlines);
-        let limit = if is_end {
-            tolerance.springback
+    let search = LocalSearch {
+        evidence,
+        fit,
+        tolerance,
+        outlines: OnceCell::new(),
+    };
+    let found = search.among_places().into_iter().chain(search.among_far());
+    let largest = found.max_by(|a, b| a.by.total_cmp(&b.by))?;
+    let Difference {
+        by,
+        limit,
+        at,
+        is_end,
+    } = largest;
+    Some(ShapeReason::Local {
+        by,
+        limit,
+        at,
+        is_end,
+    })
+}
+
+/// Two parts whose local differences are looked for.
+struct LocalSearch<'a> {
+    evidence: &'a PoseEvidence<'a>,
+    fit: &'a Fit,
+    tolerance: &'a ShapeTolerance,
+    /// Built when first asked for.
+    outlines: OnceCell<PointTree>,
+}
+
+impl LocalSearch<'_> {
+    /// What the places say that the parts are compared at.
+    fn among_places(&self) -> Option<Difference> {
+        let contacts = &self.evidence.contacts;
+        let displaced = self.evidence.displaced();
+        let per_place = contacts.nodes_per_place;
+        let met = contacts.list.iter().zip(&self.fit.left);
+        let met = met.filter_map(|(contact, &left)| self.apart(contact, (left, true), per_place));
+        let others = displaced.iter().filter_map(|contact| {
+            let left = self.fit.left_at(contact, contacts);
+            self.apart(contact, (left, false), per_place)
+        });
+        let places: Vec<Apart> = met.chain(others).collect();
+        let [of_source, of_target] = self.edges();
+        let edge = if self.is_source_smaller() {
+            of_target
         } else {
-            tolerance.remainder
+            of_source
+        };
+        self.largest(&places, edge, |slim| {
+            let is_asked = |at: &Point3| slim.iter().any(|(g, _)| g.has_beside(at, |_| true));
+            let nodes = self.evidence.of_larger(is_asked).into_iter();
+            let off = nodes.map(|node| (node.point, self.fit.left_at(&node, contacts)));
+            off.filter(|(_, left)| self.is_beyond(*left)).collect()
+        })
+    }
+
+    /// What the nodes say that lie far apart.
+    fn among_far(&self) -> Vec<Difference> {
+        if self.evidence.far.iter().any(|nodes| nodes.len() > MOST_FAR) {
+            return Vec::new();
+        }
+        let nodes = self.evidence.of_far();
+        let [of_source, of_target] = nodes.each_ref().map(|nodes| {
+            let apart = |contact| {
+                let left = self.fit.left_at(contact, &self.evidence.contacts);
+                self.apart(contact, (left, true), 1.0)
+            };
+            nodes.iter().filter_map(apart).collect::<Vec<Apart>>()
+        });
+        let [edge_of_source, edge_of_target] = self.edges();
+        let seen = |places: &[Apart]| places.iter().map(|p| (p.contact.point, p.left)).collect();
+        let of_source_nodes = self.largest(&of_source, edge_of_target, |_| seen(&of_target));
+        let of_target_nodes = self.largest(&of_target, edge_of_source, |_| seen(&of_source));
+        of_source_nodes.into_iter().chain(of_target_nodes).collect()
+    }
+
+    /// A contact as a place apart, if it is one.
+    fn apart<'b>(
+        &self,
+        contact: &'b Contact,
+        (left, meets): (f64, bool),
+        nodes_per_place: f64,
+    ) -> Option<Apart<'b>> {
+        self.is_beyond(left).then(|| Apart {
+            contact,
+            left,
+            meets,
+            size: (contact.weight * nodes_per_place).sqrt(),
+        })
+    }
+
+    fn is_beyond(&self, left: f64) -> bool {
+        left.abs() > self.tolerance.remainder
+    }
+
+    /// The largest of the groups that are no end within the tolerance of one and that elements cutting short do not
+    /// explain; `edge` is the mean edge of the mesh that the places were measured against, and `seen` tells where nodes
+    /// of that mesh lie off beside some groups.
+    fn largest<'b>(
+        &self,
+        places: &[Apart<'b>],
+        edge: f64,
+        seen: impl FnOnce(&[(Group<'_, 'b>, Difference)]) -> Vec<Off>,
+    ) -> Option<Difference> {
+        if places.len() < LEAST_PLACES {
+            return None;
+        }
+        let groups = groups(places).into_iter();
+        let groups = groups.filter(|group| group.places.len() >= LEAST_PLACES);
+        let found = groups.filter_map(|group| self.difference(&group).map(|found| (group, found)));
+        let (mut found, mut slim): (Vec<_>, Vec<_>) = found
+            .partition(|(group, _)| group.is_displaced() || group.width() >= LEAST_WIDTH * edge);
+        if !slim.is_empty() {
+            let nodes = seen(&slim);
+            slim.retain(|(group, _)| group.is_seen_by(&nodes));
+        }
+        found.append(&mut slim);
+        let found = found.into_iter().map(|(_, difference)| difference);
+        found.max_by(|a, b| a.by.total_cmp(&b.by))
+    }
+
+    /// What a group says, if it is more than springback explains of an end.
+    fn difference(&self, group: &Group<'_, '_>) -> Option<Difference> {
+        let outlines = || PointTree::build(outlines(self.evidence));
+        let is_end = group.is_end(self.outlines.get_or_init(outlines));
+        let limit = if is_end {
+            self.tolerance.springback
+        } else {
+            self.tolerance.remainder
         };
         let worst = group.worst()?;
-        let reason = ShapeReason::Local {
+        let found = Difference {
             by: worst.left.abs(),
             limit,
             at: worst.contact.point,
             is_end,
         };
-        (worst.left.abs() > limit).then_some((group, reason))
-    });
-    let narrow = LEAST_WIDTH * edge_measured_against(evidence);
-    let (mut found, slim): (Vec<_>, Vec<_>) =
-        found.partition(|(group, _)| group.is_displaced() || group.width() >= narrow);
-    found.extend(seen_by_the_larger(evidence, fit, tolerance.remainder, slim));
-    let largest = |group: &Group| group.worst().map_or(0.0, |worst| worst.left.abs());
-    let found = found
-        .into_iter()
-        .max_by(|a, b| largest(&a.0).total_cmp(&largest(&b.0)));
-    found.map(|(_, reason)| reason)
-}
-
-/// Mean edge of the larger part's mesh.
-fn edge_measured_against(evidence: &PoseEvidence<'_>) -> f64 {
-    let (source, target, scale) = (evidence.source, evidence.target, evidence.pose.scale);
-    if is_source_smaller(source, target, scale) {
-        target.measures().mean_edge_length
-    } else {
-        source.measures().mean_edge_length * scale
+        (found.by > limit).then_some(found)
     }
-}
 
-/// Those of the groups where nodes of the larger part lie apart to the same side too. Nodes lie on the sheet and
-/// facets cut it short, so that of one sheet the nodes of each part would lie in front of the other's facets.
-fn seen_by_the_larger<'a, 'b>(
-    evidence: &PoseEvidence<'_>,
-    fit: &Fit,
-    limit: f64,
-    mut found: Vec<(Group<'a, 'b>, ShapeReason)>,
-) -> Vec<(Group<'a, 'b>, ShapeReason)> {
-    if found.is_empty() {
-        return found;
+    fn is_source_smaller(&self) -> bool {
+        let PoseEvidence {
+            source,
+            target,
+            pose,
+            ..
+        } = self.evidence;
+        is_source_smaller(source, target, pose.scale)
     }
-    let nodes = evidence.of_larger(|at| {
-        found
-            .iter()
-            .any(|(group, _)| group.has_beside(at, |_| true))
-    });
-    let nodes = nodes.iter().map(|node| {
-        let left = fit.left_at(node, &evidence.contacts);
-        (node.point, left)
-    });
-    let nodes: Vec<(Point3, f64)> = nodes.filter(|(_, left)| left.abs() > limit).collect();
-    found.retain(|(group, _)| {
-        let is_alike =
-            |(at, left): &&(Point3, f64)| group.has_beside(at, |place| left * place.left > 0.0);
-        nodes.iter().filter(is_alike).count() >= LEAST_PLACES
-    });
-    found
+
+    /// Mean edges of both meshes, in the target's unit.
+    fn edges(&self) -> [f64; 2] {
+        let PoseEvidence {
+            source,
+            target,
+            pose,
+            ..
+        } = self.evidence;
+        [
+            source.measures().mean_edge_length * pose.scale,
+            target.measures().mean_edge_length,
+        ]
+    }
 }
 
 impl<'a, 'b> Group<'a, 'b> {
@@ -184,6 +279,15 @@ impl<'a, 'b> Group<'a, 'b> {
                 .places
                 .iter()
                 .any(|place| place.is_beside(at) && is_asked(place))
+    }
+
+    /// Whether nodes of the other part lie off beside it to the same side. Nodes lie on the sheet and facets cut it
+    /// short, so that of one sheet the nodes of each part would lie in front of the other's facets. Where the other part
+    /// has large elements, a few of its nodes and many places are as much.
+    fn is_seen_by(&self, nodes: &[Off]) -> bool {
+        let is_alike = |(at, left): &&Off| self.has_beside(at, |place| left * place.left > 0.0);
+        let n_seen = nodes.iter().filter(is_alike).count();
+        n_seen >= LEAST_SEEN && n_seen + self.places.len() >= 2 * LEAST_PLACES
     }
 
     /// Whether it is an end of a part rather than a place in the middle or a bead that runs out at an outline.

@@ -248,7 +248,7 @@ impl Assembly {
             ..extra
         });
         self.extras.extend(extras);
-        self.offsets.add(chunk.offsets);
+        self.offsets.add(by, chunk.offsets);
         self.found.append(chunk.diagnostics);
         self.shell_origins.push(origin);
     }

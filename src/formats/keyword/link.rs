@@ -69,6 +69,8 @@ pub(super) fn link_shells(assembly: &mut Assembly, model: &mut Model) {
     model.shell_extras = extras
         .filter_map(|extra| new_index(extra.shell).map(|shell| ShellExtra { shell, ..extra }))
         .collect();
+    let offset = assembly.offsets.shells.iter();
+    model.offset_shells = offset.filter_map(|&shell| new_index(shell)).collect();
     model.ply_stacks = std::mem::take(&mut assembly.ply_stacks);
     let mid_side = std::mem::take(&mut assembly.mid_side).into_iter();
     model.mid_side = mid_side

@@ -61,7 +61,7 @@ pub(super) fn finish(
     monitor.check()?;
     tell_odd_shells(&assembly, &mut model);
     monitor.check()?;
-    tell_offsets(&mut assembly, &mut model);
+    tell_offsets(&mut assembly, &model);
     tell_no_elements(&mut assembly, &model);
     tell_other_units(&mut assembly, &model);
     model.raw_titles = std::mem::take(&mut assembly.raw_titles);
@@ -128,15 +128,14 @@ fn leave_out_nodes(repeated: &[u32], model: &mut Model) {
 }
 
 /// Says that nodes lie off the mid-surface by the cards of their shells.
-fn tell_offsets(assembly: &mut Assembly, model: &mut Model) {
-    let offsets = assembly.offsets;
-    model.n_offset = offsets.n;
-    if offsets.n == 0 {
+fn tell_offsets(assembly: &mut Assembly, model: &Model) {
+    let n = model.offset_shells.len();
+    if n == 0 {
         return;
     }
-    let (n, s) = (offsets.n, if offsets.n == 1 { "" } else { "s" });
+    let s = if n == 1 { "" } else { "s" };
     // Without digits that come from rounding.
-    let largest = offsets.largest as f32;
+    let largest = assembly.offsets.largest as f32;
     let message = format!(
         "the nodes of {n} shell{s} lie up to {largest} off their mid-surface (*ELEMENT_SHELL_OFFSET) and are taken to \
          lie in it"

@@ -112,16 +112,19 @@ pub(crate) struct ShellChunk {
 }
 
 /// Shells whose nodes lie off their mid-surface by a card of their own.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct ShellOffsets {
-    pub n: usize,
+    /// Their indices.
+    pub shells: Vec<u32>,
     /// The largest distance, without its sign.
     pub largest: f64,
 }
 
 impl ShellOffsets {
-    pub(crate) fn add(&mut self, other: Self) {
-        self.n += other.n;
+    /// Adds those of shells that are counted from `first`.
+    pub(crate) fn add(&mut self, first: u32, other: Self) {
+        self.shells
+            .extend(other.shells.into_iter().map(|shell| first + shell));
         self.largest = self.largest.max(other.largest);
     }
 }
@@ -222,7 +225,7 @@ impl Reader<'_> {
             let Some((line, at)) = cards.next_line() else {
                 break;
             };
-            if index == 0 && self.options.offset {
+            if index == 0 && self.options.offset && kept.is_some() {
                 self.offset(&cards.card(line, at));
             }
         }
@@ -328,14 +331,13 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Counts an offset, which is not carried out.
+    /// Remembers that the shell read last has an offset, which is not carried out.
     fn offset(&mut self, card: &Card<'_>) {
         let by = card.length_or_zero(FIVE_BY_16, 0).unwrap_or(0.0);
         if by != 0.0 {
-            self.chunk.offsets.add(ShellOffsets {
-                n: 1,
-                largest: by.abs() * self.offsets.length,
-            });
+            let offsets = &mut self.chunk.offsets;
+            offsets.shells.push(self.chunk.shells.len() as u32 - 1);
+            offsets.largest = offsets.largest.max(by.abs() * self.offsets.length);
         }
     }
 

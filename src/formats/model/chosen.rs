@@ -76,7 +76,6 @@ impl Model {
             raw_titles: self.raw_titles.clone(),
             stated_units: self.stated_units,
             ply_stacks: self.ply_stacks.clone(),
-            n_offset: self.n_offset,
             shell_control: self.shell_control,
             parts: parts.filter(&self.parts).cloned().collect(),
             ..Self::default()
@@ -98,6 +97,8 @@ impl Model {
         model.mid_side = mid_side
             .map(|(shell, of_edges)| (shells.of(*shell), of_edges.map(|node| nodes.of(node))))
             .collect();
+        let offset = self.offset_shells.iter().filter(|&&s| shells.has(s));
+        model.offset_shells = offset.map(|&shell| shells.of(shell)).collect();
         let extras = self.shell_extras.iter().filter(|e| shells.has(e.shell));
         model.shell_extras = extras
             .map(|extra| ShellExtra {

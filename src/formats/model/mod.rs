@@ -359,8 +359,9 @@ pub struct Model {
     /// Thickness of the plies, from the bottom side up, of shells that have their own (`_COMPOSITE`); stacks that
     /// are alike stand here once.
     pub ply_stacks: Vec<Vec<f64>>,
-    /// How many shells have a distance of their nodes from the mid-surface on a card (`_OFFSET`), which is not kept.
-    pub n_offset: usize,
+    /// Shells that have a distance of their nodes from the mid-surface on a card (`_OFFSET`), which is not kept: indices
+    /// into [`Model::shells`].
+    pub offset_shells: Vec<u32>,
     /// Solids and thick shells whose nodes all exist.
     pub solids: Vec<Solid>,
     /// Parts, the defined ones and those that only elements name, in the order they were met.

@@ -339,7 +339,9 @@ fn error_row(
         plastic_mean: plastic.mean_error(),
         plastic_peak: plastic.peak(),
         peak_of_stamped: plastic.largest / stamped.fold(f64::NAN, f64::max),
-        back_p95: back.map_or(f64::NAN, |back| back.plastic_p95 / back.plastic_range),
+        back_p95: back
+            .and_then(|back| back.plastic.share_of_range())
+            .unwrap_or(f64::NAN),
         map_ms: run.map_ms,
     }
 }

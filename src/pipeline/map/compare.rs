@@ -198,19 +198,41 @@ impl ComparisonRecord {
         found.as_ref()
     }
 
-    /// What was compared, by its name; `None` where either side has nothing of it.
-    pub fn rows(&self) -> [(&'static str, Option<&DifferenceRecord>); 5] {
-        [
-            ("Thickness", self.thickness.as_ref()),
-            ("Effective plastic strain", self.plastic_strain.as_ref()),
+    /// What was compared, by its name and as [`Self::of`] knows it.
+    pub fn rows(&self) -> impl Iterator<Item = ComparedRow<'_>> {
+        let names = [
+            ("Thickness", None),
+            (
+                "Effective plastic strain",
+                Some(FormingValue::PlasticStrain),
+            ),
             (
                 "Von Mises stress in the middle of the sheet",
-                self.von_mises.as_ref(),
+                Some(FormingValue::VonMises),
             ),
-            ("Largest major strain", self.major_strain.as_ref()),
-            ("Smallest minor strain", self.minor_strain.as_ref()),
-        ]
+            ("Largest major strain", Some(FormingValue::MajorStrain)),
+            ("Smallest minor strain", Some(FormingValue::MinorStrain)),
+        ];
+        let row = |(name, value)| {
+            Some(ComparedRow {
+                name,
+                value,
+                difference: self.of(value)?,
+            })
+        };
+        names.into_iter().filter_map(row)
     }
+}
+
+/// A quantity that both results have.
+#[derive(Debug, Clone, Copy)]
+pub struct ComparedRow<'a> {
+    /// Its name.
+    pub name: &'static str,
+    /// Which it is; `None` for the thickness.
+    pub value: Option<FormingValue>,
+    /// The differences of the elements.
+    pub difference: &'a DifferenceRecord,
 }
 
 /// Compares a mapping with another result. O(elements · log elements).

@@ -17,6 +17,7 @@ mod read_back;
 mod ready;
 mod record;
 mod report;
+mod thickness_sums;
 mod unmapped;
 mod values;
 mod verdict;
@@ -27,7 +28,7 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-pub use compare::{ComparisonRecord, DifferenceRecord, OtherResult, compare_with};
+pub use compare::{ComparedRow, ComparisonRecord, DifferenceRecord, OtherResult, compare_with};
 pub use default_thickness::DefaultThickness;
 pub use head::deck_comments;
 pub use lists::{DoubtfulElement, ElementLists, GiverShare, UnmappedElement, element_lists};
@@ -39,6 +40,7 @@ pub use probe::{ProbeRecord, ProbedValue, probe_records};
 pub use ready::check_shells;
 pub use record::{DistributionRecord, MapRecord, PairRecord, element_table, map_record};
 pub use report::map_report;
+pub(super) use thickness_sums::ThicknessSums;
 pub use unmapped::unmapped_sets;
 pub use values::{Profile, ShownValue};
 pub(super) use verdict::LEAST_AREA;
@@ -55,9 +57,6 @@ use crate::mapping::{
 };
 use crate::monitor::Monitor;
 use convert::{PartShells, TargetLayers, part_shells, source_part, target_part};
-
-/// Usual ratio of the mean thickness of a formed part to that of its section.
-const USUAL_THINNING: std::ops::RangeInclusive<f64> = 0.75..=1.1;
 
 /// What a mapping depends on besides the decks and the poses.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -109,8 +108,8 @@ pub struct PlacedPart<'a> {
 /// Means, percentiles and the way back: is the mapping right?
 #[derive(Debug, Clone, Default)]
 pub struct MapChecks {
-    /// Thickness of the covered elements of all stamped parts and of the mapped crash elements, without those
-    /// that were filled.
+    /// Thickness of the covered elements of all stamped parts, times the thickness factor, and of the mapped crash
+    /// elements, without those that were filled.
     pub thickness: Option<(Distribution, Distribution)>,
     /// The same for the plastic strain, mean over the layers.
     pub plastic_strain: Option<(Distribution, Distribution)>,
@@ -184,24 +183,14 @@ impl MapRun {
         self.mapped.mean_plastic_strain(&self.target, element)
     }
 
-    /// Mean thickness of the crash elements with values, over their area; NaN where none was mapped.
-    pub fn mean_thickness(&self) -> f64 {
-        let values = self.mapped.thickness.iter().zip(self.target.mesh.areas());
-        let known = values.filter(|(t, _)| t.is_finite());
-        let (sum, area) = known.fold((0.0, 0.0), |(sum, all), (t, area)| {
-            (sum + t * area, all + area)
-        });
-        sum / area
-    }
-
-    /// Mean thickness over that of the crash elements, their own or their section's, where that is unusual: another
-    /// gauge or another unit.
-    pub fn unusual_thickness(&self) -> Option<f64> {
-        let (thickness, _) = self.checks.thickness.as_ref()?;
-        let nominal = self.target.nominal_thickness.iter().copied();
-        let known: Vec<f64> = nominal.filter(|t| t.is_finite() && *t > 0.0).collect();
-        let mean = known.iter().sum::<f64>() / known.len().max(1) as f64;
-        unusual_ratio(thickness.mean, mean)
+    /// The mapped thickness over the crash elements that have it, beside their own or their section's.
+    pub(super) fn thickness_sums(&self) -> ThicknessSums {
+        let mut sums = ThicknessSums::default();
+        for (element, &area) in self.target.mesh.areas().iter().enumerate() {
+            let section = self.target.nominal_thickness[element];
+            sums.add(area, self.thickness(element), section);
+        }
+        sums
     }
 
     /// A quantity of the source element that an element took its values from, given by part and
@@ -215,12 +204,6 @@ impl MapRun {
             )
         })
     }
-}
-
-/// A mean thickness over that of the section where that is unusual.
-pub(in crate::pipeline) fn unusual_ratio(thickness: f64, section: f64) -> Option<f64> {
-    let ratio = thickness / section;
-    (section > 0.0 && !USUAL_THINNING.contains(&ratio)).then_some(ratio)
 }
 
 /// Maps the stamped parts onto `crash` and checks the result.
@@ -389,7 +372,9 @@ fn check(
         Err(_) => return Ok(checks),
     };
     monitor.check()?;
-    let sources = placed.iter().map(|placed| placed.part);
+    let sources = placed
+        .iter()
+        .map(|placed| (placed.part, placed.target_from_source.scale));
     let on_sources = |value: &dyn Fn(&SourcePart, usize) -> f64| {
         covered_values(sources.clone().zip(&back.is_covered), value)
     };
@@ -399,13 +384,10 @@ fn check(
         let all = (0..target.mesh.len()).filter(|&element| !is_filled(element));
         distribution(all.map(|element| (value(element), target.mesh.areas()[element])))
     };
-    let thickness = on_sources(&SourcePart::mean_thickness);
-    let mapped_thickness = |element: usize| {
-        mapped
-            .thickness
-            .get(element)
-            .map_or(f64::NAN, |t| t / options.thickness_scale)
-    };
+    let factor = options.thickness_scale;
+    let thickness = on_sources(&|part, element| factor * part.mean_thickness(element));
+    let mapped_thickness =
+        |element: usize| mapped.thickness.get(element).copied().unwrap_or(f64::NAN);
     checks.thickness = distribution(thickness.into_iter()).zip(on_target(&mapped_thickness));
     monitor.check()?;
     if options.quantities.plastic_strain {
@@ -417,16 +399,18 @@ fn check(
     Ok(checks)
 }
 
-/// Values of the covered elements of all stamped parts, with the area each stands for.
+/// Values of the covered elements of all stamped parts, given with the scale of their poses, and the area that each
+/// stands for on the crash part.
 fn covered_values<'a>(
-    sources: impl Iterator<Item = (&'a SourcePart, &'a Vec<bool>)>,
+    sources: impl Iterator<Item = ((&'a SourcePart, f64), &'a Vec<bool>)>,
     value: impl Fn(&SourcePart, usize) -> f64,
 ) -> Vec<(f64, f64)> {
     let mut values = Vec::new();
-    for (source, is_covered) in sources {
+    for ((source, scale), is_covered) in sources {
         let areas = source.mesh.areas().iter().zip(is_covered).enumerate();
         let covered = areas.filter(|(_, (_, is_covered))| **is_covered);
-        values.extend(covered.map(|(element, (area, _))| (value(source, element), *area)));
+        let on_crash = |area: &f64| area * scale * scale;
+        values.extend(covered.map(|(element, (area, _))| (value(source, element), on_crash(area))));
     }
     values
 }

@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use serde::Serialize;
+use serde::ser::SerializeStruct as _;
+use serde::{Serialize, Serializer};
 
 use super::compare::{ComparisonRecord, OtherResult, compare_with};
 use super::values::middle_of;
@@ -12,7 +13,7 @@ use super::warnings::warnings;
 use super::{MapFiles, MapRun, PlacedPart, PoseOrigin, ProbeRecord, ShownValue, covered_values};
 use crate::geometry::chunks::for_chunks;
 use crate::mapping::{
-    Distribution, Histogram, SourcePart, Status, distribution, histogram_distance,
+    BackDifference, Distribution, Histogram, SourcePart, Status, distribution, histogram_distance,
 };
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::forming_values::{FormingValue, LayerChoice, nominal_thickness};
@@ -172,20 +173,26 @@ impl From<Distribution> for DistributionRecord {
 }
 
 /// Differences after mapping there and back; the error of one way is about half.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy)]
 pub struct MapBackRecord {
-    /// Root mean square difference of the thickness.
-    pub thickness_rms: f64,
-    /// 95 % of the area differ by less.
-    pub thickness_p95: f64,
-    /// Range of the thickness, 5th to 95th percentile.
-    pub thickness_range: f64,
-    /// Root mean square difference of the plastic strain.
-    pub plastic_rms: f64,
-    /// 95 % of the area differ by less.
-    pub plastic_p95: f64,
-    /// Range of the plastic strain, 5th to 95th percentile.
-    pub plastic_range: f64,
+    /// Difference of the thickness.
+    pub thickness: BackDifference,
+    /// Difference of the plastic strain.
+    pub plastic: BackDifference,
+}
+
+impl Serialize for MapBackRecord {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self { thickness, plastic } = self;
+        let mut record = serializer.serialize_struct("MapBackRecord", 6)?;
+        record.serialize_field("thickness_rms", &thickness.rms)?;
+        record.serialize_field("thickness_p95", &thickness.p95)?;
+        record.serialize_field("thickness_range", &thickness.range)?;
+        record.serialize_field("plastic_rms", &plastic.rms)?;
+        record.serialize_field("plastic_p95", &plastic.p95)?;
+        record.serialize_field("plastic_range", &plastic.range)?;
+        record.end()
+    }
 }
 
 /// Puts a run into figures. `files` are what was made of it, `other` is what it is to be compared with, if
@@ -255,12 +262,8 @@ pub fn map_record(
         von_mises,
         checks: Vec::new(),
         map_back: checks.map_back.as_ref().map(|back| MapBackRecord {
-            thickness_rms: back.thickness_rms,
-            thickness_p95: back.thickness_p95,
-            thickness_range: back.thickness_range,
-            plastic_rms: back.plastic_rms,
-            plastic_p95: back.plastic_p95,
-            plastic_range: back.plastic_range,
+            thickness: back.thickness,
+            plastic: back.plastic,
         }),
         read_back_error: files.map(|files| files.read_back_error),
         comparison: other
@@ -308,8 +311,10 @@ fn both_sides(
     let back = run.checks.map_back.as_ref();
     let covered = back.map(|back| &back.is_covered[..]).unwrap_or_default();
     let target = run.target.mesh.areas().iter().enumerate();
+    let scales = run.poses.iter().map(|pose| pose.scale);
+    let sources = run.sources.iter().zip(scales);
     [
-        covered_values(run.sources.iter().zip(covered), on_source),
+        covered_values(sources.zip(covered), on_source),
         target
             .map(|(element, area)| (on_target(element), *area))
             .collect(),
@@ -317,10 +322,9 @@ fn both_sides(
 }
 
 fn thickness_values(run: &MapRun) -> BothSides {
-    let scale = run.recipe.options.thickness_scale;
-    both_sides(run, SourcePart::mean_thickness, |element| {
-        run.thickness(element) / scale
-    })
+    let factor = run.recipe.options.thickness_scale;
+    let on_source = |part: &SourcePart, element| factor * part.mean_thickness(element);
+    both_sides(run, on_source, |element| run.thickness(element))
 }
 
 fn thinning_values(run: &MapRun, flat: f64) -> BothSides {

@@ -4,8 +4,8 @@ use super::lists::givers;
 use super::record::{DistributionRecord, MapRecord, PairRecord, von_mises_of};
 use super::verdict::{change, change_text};
 use super::{
-    CheckReason, CheckRecord, DifferenceRecord, MapRun, OtherResult, PipelineError, ProbeRecord,
-    ProbedValue, ShownValue,
+    CheckReason, CheckRecord, ComparedRow, DifferenceRecord, MapRun, OtherResult, PipelineError,
+    ProbeRecord, ProbedValue, ShownValue,
 };
 use crate::colormap::{ColorMap, ColorScale, Rgb, UNMATCHED};
 use crate::geometry::chunks::{for_chunks, map_chunks};
@@ -28,8 +28,6 @@ use crate::text::{
 
 /// Pixels of a picture.
 const SIZE: [usize; 2] = [560, 380];
-/// Share of the area at either end that lies beyond the colours.
-const TAILS: usize = 1;
 
 /// Writes the report of a run as one HTML file with pictures of thickness, plastic strain and, where
 /// stresses were mapped, von Mises stress before and after, their difference, and the status of the
@@ -137,21 +135,13 @@ fn facts(record: &MapRecord, lengths: Lengths) -> Vec<[String; 3]> {
         }
     }
     if let Some(back) = &record.map_back {
-        for (name, p95, range) in [
-            (
-                "Thickness there and back",
-                back.thickness_p95,
-                back.thickness_range,
-            ),
-            (
-                "Plastic strain there and back",
-                back.plastic_p95,
-                back.plastic_range,
-            ),
+        for (name, difference) in [
+            ("Thickness there and back", &back.thickness),
+            ("Plastic strain there and back", &back.plastic),
         ] {
-            if range > 0.0 {
+            if let Some(of_range) = difference.share_of_range() {
                 let note = "of the range, 95 % of the area".to_owned();
-                facts.push([name.to_owned(), share(p95 / range), note]);
+                facts.push([name.to_owned(), share(of_range), note]);
             }
         }
     }
@@ -193,8 +183,8 @@ fn comparison_rows(record: &MapRecord) -> Vec<(String, [String; 6])> {
     let Some(other) = &record.comparison else {
         return Vec::new();
     };
-    let row = |(name, found): (&str, Option<&DifferenceRecord>)| {
-        let found = found?;
+    let row = |row: ComparedRow<'_>| {
+        let found = row.difference;
         let cells = [
             grouped(found.n_elements),
             signed(found.mean),
@@ -203,9 +193,9 @@ fn comparison_rows(record: &MapRecord) -> Vec<(String, [String; 6])> {
             length(found.max),
             found.element.to_string(),
         ];
-        Some((name.to_owned(), cells))
+        (row.name.to_owned(), cells)
     };
-    other.rows().into_iter().filter_map(row).collect()
+    other.rows().map(row).collect()
 }
 
 fn checks(record: &MapRecord) -> Vec<CheckReport> {
@@ -405,21 +395,13 @@ impl<'a> Painter<'a> {
         let Some((comparison, other)) = record.comparison.as_ref().zip(other) else {
             return Ok(quantities);
         };
-        let values = [
-            None,
-            Some(FormingValue::PlasticStrain),
-            Some(FormingValue::VonMises),
-            Some(FormingValue::MajorStrain),
-            Some(FormingValue::MinorStrain),
-        ];
-        for ((name, found), value) in comparison.rows().into_iter().zip(values) {
-            let shown = ShownValue::compared(value);
-            let name = match value {
-                None => self.lengths.axis(name),
-                Some(_) => name.to_owned(),
+        for row in comparison.rows() {
+            let shown = ShownValue::compared(row.value);
+            let name = match row.value {
+                None => self.lengths.axis(row.name),
+                Some(_) => row.name.to_owned(),
             };
-            let beside = found.map(|found| self.beside(&name, found, other, &shown));
-            quantities.extend(beside.transpose()?);
+            quantities.push(self.beside(&name, row.difference, other, &shown)?);
         }
         Ok(quantities)
     }
@@ -468,7 +450,10 @@ impl<'a> Painter<'a> {
         let areas = self.run.target.mesh.areas();
         let all = (0..areas.len()).map(|e| (difference(e).abs(), areas[e]));
         let spread = crate::mapping::distribution(all);
-        let limit = spread.map_or(0.0, |found| found.percentiles[2 + TAILS]);
+        let limit = spread.map_or(0.0, |found| {
+            let [.., p99] = found.percentiles;
+            p99
+        });
         let limit = if limit > 0.0 {
             limit
         } else {

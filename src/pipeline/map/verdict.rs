@@ -10,7 +10,9 @@ use super::{MapRun, ShownValue};
 use crate::mapping::Status;
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::forming_values::FormingValue;
-use crate::text::{Lengths, counted, fixed, length, percent, share, signed_percent};
+use crate::text::{
+    Lengths, compared_percents, counted, fixed, length, percent, share, signed_percent,
+};
 
 /// Share of the area that is to carry values where no other is asked for.
 pub(in crate::pipeline) const LEAST_AREA: f64 = 0.95;
@@ -147,29 +149,27 @@ pub(super) fn checks_of(
         checks.push(peak(run, pair, monitor)?);
     }
     if let Some(back) = &record.map_back {
-        for (name, p95, range, picture, value) in [
+        for (name, difference, picture, value) in [
             (
                 "Thickness there and back",
-                back.thickness_p95,
-                back.thickness_range,
+                &back.thickness,
                 CheckPicture::Thickness,
                 None,
             ),
             (
                 "Plastic strain there and back",
-                back.plastic_p95,
-                back.plastic_range,
+                &back.plastic,
                 CheckPicture::PlasticStrain,
                 plastic,
             ),
         ] {
             monitor.check()?;
-            if range > 0.0 {
+            if let Some(of_range) = difference.share_of_range() {
                 checks.push(CheckRecord {
                     name: name.to_owned(),
                     // What the crash elements are too large for comes back smoothed, however it is
                     // mapped, so this is no verdict.
-                    found: share(p95 / range),
+                    found: share(of_range),
                     limit: "of the range, P95".to_owned(),
                     is_met: None,
                     reason: None,
@@ -203,11 +203,13 @@ fn pose(record: &MapRecord, lengths: Lengths) -> Option<CheckRecord> {
 
 fn area(run: &MapRun, record: &MapRecord) -> CheckRecord {
     let elements = &run.mapped.elements;
+    let wanted = run.recipe.wanted_area();
+    let [found, limit] = compared_percents([record.mapped_area, wanted]);
     CheckRecord {
         name: "Area with values".to_owned(),
-        found: percent(record.mapped_area),
-        limit: format!("at least {}", percent(run.recipe.wanted_area())),
-        is_met: Some(record.mapped_area >= run.recipe.wanted_area()),
+        found,
+        limit: format!("at least {limit}"),
+        is_met: Some(record.mapped_area >= wanted),
         reason: None,
         picture: CheckPicture::Status,
         worst: elements
@@ -306,10 +308,14 @@ fn confidence(run: &MapRun) -> CheckRecord {
     }
     // Nothing is said of what is not there.
     let share = (area > 0.0).then(|| doubtful / area);
+    let [found, limit] = match share {
+        Some(share) => compared_percents([share, DOUBTFUL_AREA]),
+        None => ["–".to_owned(), percent(DOUBTFUL_AREA)],
+    };
     CheckRecord {
         name: format!("Confidence below {}", fixed(DOUBTFUL, 1)),
-        found: share.map_or_else(|| "–".to_owned(), percent),
-        limit: format!("at most {}", percent(DOUBTFUL_AREA)),
+        found,
+        limit: format!("at most {limit}"),
         is_met: share.map(|share| share <= DOUBTFUL_AREA),
         reason: None,
         picture: CheckPicture::Confidence,

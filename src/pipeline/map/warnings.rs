@@ -10,7 +10,8 @@ use crate::mapping::{Facing, MapOptions, Quantities, SourcePart, Status};
 use crate::pipeline::load::{LoadedPart, same_parts_line};
 use crate::registration::guess_unit;
 use crate::role::PerRole;
-use crate::text::{counted, length, parts_by_id, trimmed};
+use crate::settings::exact;
+use crate::text::{counted, length, parts_by_id, share, trimmed};
 
 /// The parts of a stamped file that have neither stresses nor strains, and no thickness but that of their
 /// section; in words.
@@ -60,7 +61,7 @@ pub(super) fn warnings(
     warnings.extend(stress_units(run, crash, stamped));
     warnings.extend(unscaled_history(run, stamped));
     warnings.extend(unknown_law(run));
-    if let Some(ratio) = run.unusual_thickness() {
+    if let Some(ratio) = run.thickness_sums().unusual_ratio() {
         warnings.push(format!(
             "the mapped thickness is {} times that of the crash elements; another gauge or another unit?",
             length(ratio)
@@ -132,7 +133,7 @@ fn other_unit(run: &MapRun, stamped: &[PlacedPart<'_>]) -> Vec<String> {
             placed.part.file_name(),
             unit.source.plural(),
             unit.target.plural(),
-            length(unit.factor() * placed.part.settings.length_factor)
+            exact(unit.factor() * placed.part.settings.length_factor)
         ))
     };
     stamped.iter().zip(&run.sources).filter_map(hint).collect()
@@ -195,8 +196,8 @@ fn of_elements(run: &MapRun) -> Vec<String> {
     let area = mapped.mapped_area(&run.target.mesh);
     if area < run.recipe.wanted_area() {
         warnings.push(format!(
-            "only {:.1} % of the crash part's area carries values; the status of the elements says why",
-            100.0 * area
+            "only {} of the crash part's area carries values; the status of the elements says why",
+            share(area)
         ));
     }
     let count = |status: Status| mapped.counts()[status as usize];
@@ -234,7 +235,7 @@ fn of_elements(run: &MapRun) -> Vec<String> {
     }
     if mapped.n_distant > 0 {
         warnings.push(format!(
-            "{} farther from the stamped part than half the largest distance",
+            "{} farther from the stamped part than half the distance within which it is looked for",
             counted(mapped.n_distant, "element")
         ));
     }

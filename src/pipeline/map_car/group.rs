@@ -18,7 +18,7 @@ use crate::pipeline::map::{
     mapped_by_solver, write_mapping,
 };
 use crate::pipeline::names::file_name;
-use crate::pipeline::write_file::write_file_unless_cancelled;
+use crate::pipeline::write_file::write_files_unless_cancelled;
 use crate::role::PerRole;
 
 /// Stamped parts that lie on the same elements by more than this share of the area are in conflict.
@@ -121,14 +121,18 @@ impl Group<'_> {
         let comments = deck_comments(&crash, &placed);
         let files = write_mapping(&run, &crash, &output, &comments, monitor)?;
         let record = map_record(&run, &crash, &placed, Some(&files), None, monitor)?;
-        for file in &files.files {
-            write_file_unless_cancelled(&file.path, &file.bytes, monitor)?;
-        }
         let page = recipe.has_pages.then(|| format!("{stem}.html"));
-        if let Some(name) = &page {
-            let page = map_report(&run, &record, &crash, None, monitor)?;
-            write_file_unless_cancelled(&recipe.folder.join(name), page.as_bytes(), monitor)?;
-        }
+        let report = match &page {
+            Some(name) => {
+                let report = map_report(&run, &record, &crash, None, monitor)?;
+                Some((recipe.folder.join(name), report))
+            }
+            None => None,
+        };
+        let report = report.iter().map(|(path, text)| (&**path, text.as_bytes()));
+        let made = files.files.iter().map(|file| (&*file.path, &*file.bytes));
+        let made: Vec<_> = made.chain(report).collect();
+        write_files_unless_cancelled(&made, monitor)?;
         let mirrored_twin = match &stamped[..] {
             [alone] => Self::twin_of(alone, &crash, &run, (recipe, monitor))?,
             _ => None,

@@ -127,7 +127,7 @@ struct Claim {
 ///
 /// Stamped parts that claim the same crash part are mapped onto it together. A file that cannot be read or
 /// that fits nothing is a row of the record, and where nothing is mapped at all no deck is written; an error is only
-/// what concerns all: a cancel request, or a folder that cannot be written.
+/// what concerns all: a cancel request, or that the deck that includes them cannot be written.
 pub fn map_car(
     crash: &LoadedPart,
     stamped: &[StampedFile],

@@ -4,7 +4,7 @@ use super::Claim;
 use crate::geometry::{Point3, Similarity, Vector3};
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::load::LoadedPart;
-use crate::pipeline::map::{MapRun, unusual_ratio};
+use crate::pipeline::map::{MapRun, ThicknessSums};
 use crate::search::ClosestPoint as _;
 
 /// Where so much of the crash triangles that a part lies on is under another one too, it lies in the place of that.
@@ -79,15 +79,16 @@ pub(super) struct Given {
 pub(super) fn given(run: &MapRun, monitor: &Monitor) -> Result<Vec<Given>, Cancelled> {
     if run.sources.len() == 1 {
         // With what was filled from its values.
+        let sums = run.thickness_sums();
         return Ok(vec![Given {
             area: run.mapped.mapped_area(&run.target.mesh),
-            thickness: run.mean_thickness(),
-            thickness_ratio: run.unusual_thickness(),
+            thickness: sums.mean(),
+            thickness_ratio: sums.unusual_ratio(),
         }]);
     }
     let areas = run.target.mesh.areas();
     let whole: f64 = areas.iter().sum();
-    let mut sums = vec![Sums::default(); run.sources.len()];
+    let mut sums = vec![ThicknessSums::default(); run.sources.len()];
     for (element, &area) in areas.iter().enumerate() {
         if element.is_multiple_of(CHUNK) {
             monitor.check()?;
@@ -97,37 +98,10 @@ pub(super) fn given(run: &MapRun, monitor: &Monitor) -> Result<Vec<Given>, Cance
             sums[part].add(area, run.thickness(element), section);
         }
     }
-    let scale = run.recipe.options.thickness_scale;
     let given = sums.into_iter().map(|sums| Given {
         area: sums.area / whole,
-        thickness: sums.thickness / sums.with_thickness,
-        thickness_ratio: unusual_ratio(sums.beside_section / scale, sums.section),
+        thickness: sums.mean(),
+        thickness_ratio: sums.unusual_ratio(),
     });
     Ok(given.collect())
-}
-
-/// Sums over the area that one part gives its values to.
-#[derive(Debug, Clone, Copy, Default)]
-struct Sums {
-    area: f64,
-    with_thickness: f64,
-    thickness: f64,
-    /// The mapped thickness where the section has one too, and that.
-    beside_section: f64,
-    section: f64,
-}
-
-impl Sums {
-    fn add(&mut self, area: f64, thickness: f64, section: f64) {
-        self.area += area;
-        if !thickness.is_finite() {
-            return;
-        }
-        self.with_thickness += area;
-        self.thickness += area * thickness;
-        if section.is_finite() && section > 0.0 {
-            self.beside_section += area * thickness;
-            self.section += area * section;
-        }
-    }
 }

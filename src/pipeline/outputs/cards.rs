@@ -61,7 +61,7 @@ pub fn cards(
     let options = CardOptions {
         file_name: folder
             .and_then(|folder| name_from(folder, stamped))
-            .unwrap_or_else(|| included_name(stamped)),
+            .unwrap_or_else(|| included_name(&stamped.file_name()).to_owned()),
         receiver: receiver(crash)?,
         search_radius: coverage.limit,
         mapped_percent: (100.0 * coverage.target_on_source.overlap - 1.0).max(0.0),
@@ -126,13 +126,13 @@ pub fn check(parts: PerRole<&LoadedPart>) -> Result<(), PipelineError> {
             return Err(PipelineError::CardsNeedOneUnit { name, factor });
         }
     }
-    check_file_name(&included_name(parts.stamped))?;
+    check_file_name(included_name(&parts.stamped.file_name()))?;
     receiver(parts.crash).map(|_| ())
 }
 
-/// The name of the stamped file as the deck includes it: the solver reads the unpacked file.
-fn included_name(stamped: &LoadedPart) -> String {
-    stamped.file_name().trim_end_matches(".gz").to_owned()
+/// The name of a stamped file as a deck includes it: the solver reads the unpacked file.
+pub fn included_name(stamped: &str) -> &str {
+    stamped.trim_end_matches(".gz")
 }
 
 /// The same as it lies from a folder. `None` if that is not known, or no name that a card holds.
@@ -153,7 +153,7 @@ fn name_from(folder: &Path, stamped: &LoadedPart) -> Option<String> {
         // Solvers take it on every system.
         name.push('/');
     }
-    name.push_str(&included_name(stamped));
+    name.push_str(included_name(&stamped.file_name()));
     file_name_fault(&name).is_none().then_some(name)
 }
 

@@ -14,23 +14,14 @@ use crate::pipeline::units::PairUnits;
 use crate::report::build_id;
 use crate::text::counted;
 
-/// A mesh in a format.
-fn mesh_bytes(
-    format: Format,
-    mesh: &TriMesh,
-    title: &str,
-    monitor: &Monitor,
-) -> Result<Vec<u8>, PipelineError> {
-    Ok(match format {
-        Format::Keyword => write(
-            &Model::from_mesh(mesh, title),
-            &WriteOptions::default(),
-            monitor,
-        )?,
-        Format::Stl => stl::write_binary(mesh),
-        Format::Obj => obj::write(mesh, title),
-        Format::Ply => ply::write(mesh, title),
-    })
+/// How a surface with a title is written in a format without ids; `None` for a deck.
+fn mesh_writer(format: Format) -> Option<fn(&TriMesh, &str) -> Vec<u8>> {
+    match format {
+        Format::Keyword => None,
+        Format::Stl => Some(|mesh, _| stl::write_binary(mesh)),
+        Format::Obj => Some(obj::write),
+        Format::Ply => Some(ply::write),
+    }
 }
 
 /// The chosen elements, moved, with their own ids. The unit factor is applied as well, so the bytes are in the
@@ -42,9 +33,9 @@ pub fn part_bytes(
     comments: &[String],
     monitor: &Monitor,
 ) -> Result<Vec<u8>, PipelineError> {
-    if format != Format::Keyword {
+    if let Some(write) = mesh_writer(format) {
         let mesh = part.mesh.transformed(world_from_part);
-        return mesh_bytes(format, &mesh, &comments.join(", "), monitor);
+        return Ok(write(&mesh, &comments.join(", ")));
     }
     let unit = Similarity::from_scale(part.settings.length_factor);
     let selection = &part.settings.selection;
@@ -76,8 +67,8 @@ pub fn reduced_bytes(
 ) -> Result<Vec<u8>, PipelineError> {
     let mesh = mesh.transformed(world_from_part);
     let title = format!("{}, reduced", part.file_name());
-    if format != Format::Keyword {
-        return mesh_bytes(format, &mesh, &title, monitor);
+    if let Some(write) = mesh_writer(format) {
+        return Ok(write(&mesh, &title));
     }
     let mut model = Model::from_mesh(&mesh, title);
     model.raw_titles = part.model.raw_titles.clone();
@@ -141,11 +132,9 @@ pub fn left_out(part: &LoadedPart) -> Option<String> {
     if !lacks.is_empty() {
         lacks.push("which have the sum of their thicknesses".to_owned());
     }
-    if model.n_offset > 0 {
-        lacks.push(format!(
-            "the offset of {}",
-            counted(model.n_offset, "shell")
-        ));
+    let n_offset = model.offset_shells.len();
+    if n_offset > 0 {
+        lacks.push(format!("the offset of {}", counted(n_offset, "shell")));
     }
     (!lacks.is_empty()).then(|| format!("left out of the deck: {}", lacks.join(", ")))
 }

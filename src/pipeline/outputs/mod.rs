@@ -11,7 +11,7 @@ use super::load::LoadedPart;
 use super::map::{MapRun, OtherResult, WriteKind, elements_path};
 use super::match_parts::{MatchRun, with_alternative};
 use super::units::PairUnits;
-use super::write_file::write_file_unless_cancelled;
+use super::write_file::{write_file_unless_cancelled, write_files_unless_cancelled};
 use crate::formats::Format;
 use crate::geometry::{Similarity, TriMesh};
 use crate::monitor::Monitor;
@@ -406,14 +406,11 @@ impl Output {
             Self::Mesh(_) => Some(deck::format_of(path)?),
             Self::Mapped(kind) => {
                 let made = mapped::deck_files(kind, input, path, monitor)?;
-                let mut notes = vec![mapped::note(&made)];
-                for (index, file) in made.files.iter().enumerate() {
-                    write_file_unless_cancelled(&file.path, &file.bytes, monitor)?;
-                    if index > 0 {
-                        notes.push(mapped::note_beside(file));
-                    }
-                }
-                return Ok(notes);
+                let files = made.files.iter();
+                let files: Vec<_> = files.map(|file| (&*file.path, &*file.bytes)).collect();
+                write_files_unless_cancelled(&files, monitor)?;
+                let beside = made.files.iter().skip(1).map(mapped::note_beside);
+                return Ok([mapped::note(&made)].into_iter().chain(beside).collect());
             }
             _ => None,
         };

@@ -10,7 +10,7 @@ use crate::geometry::{Matrix3, Similarity, Vector3};
 use crate::report::matrix::number;
 use crate::report::{AlternativeRecord, MatrixForm, PoseRecord};
 use crate::role::PerRole;
-use crate::text::{fixed, percent, sentence, vector};
+use crate::text::{counted, fixed, percent, sentence, vector};
 
 /// The sections with the words of their links.
 const LINKS: [(&str, &str); 9] = [
@@ -200,10 +200,12 @@ impl Report<'_> {
     fn motion_table(&self, unit: &str) -> Markup {
         let pose = &self.record.pose;
         let rotation = &pose.rotation_axis_angle;
+        let lengths = self.lengths();
+        let place = |at, decimals| vector(at, lengths.decimals_as_of_mm(decimals));
         let mut rows = vec![
             (
                 "Translation of the centre",
-                cell(format!("{} {unit}", vector(pose.center_move, 3))),
+                cell(format!("{} {unit}", place(pose.center_move, 3))),
             ),
             (
                 "Rotation",
@@ -220,7 +222,7 @@ impl Report<'_> {
             ("Scale c", cell(number(pose.scale))),
         ];
         if let Some(node) = pose.sample_node {
-            let (from, to) = (vector(node.stamped, 4), vector(node.crash, 4));
+            let (from, to) = (place(node.stamped, 4), place(node.crash, 4));
             rows.push(("Sample node", cell(format!("{}: {from} → {to}", node.id))));
         }
         let factor = self.record.units.stamped_factor;
@@ -237,8 +239,8 @@ impl Report<'_> {
         let iterations: usize = outcome.starts.iter().map(|s| s.iterations.len()).sum();
         html! {
             p {
-                (outcome.starts.len()) " starts took " (iterations) " iterations and ended in "
-                (self.groups.len()) " poses."
+                (counted(outcome.starts.len(), "start")) " took " (counted(iterations, "iteration"))
+                " and ended in " (counted(self.groups.len(), "pose")) "."
             }
             (self.start_table())
             @if let Some(chart) = charts::convergence(outcome, self.lengths()) {

@@ -10,7 +10,7 @@ use crate::report::distances::{COMPARED_P95, COMPARED_RMS};
 use crate::report::matrix::number;
 use crate::report::{FileRecord, outcome_words, start_name};
 use crate::settings::{SETTINGS, Setting};
-use crate::text::{fixed, grouped, length, percent};
+use crate::text::{counted, fixed, grouped, length, millis, percent};
 
 /// Groups of starts that are listed.
 const N_GROUPS: usize = 8;
@@ -67,6 +67,7 @@ impl Report<'_> {
     /// The largest deviations, those with pictures first.
     pub(super) fn spot_table(&self) -> Markup {
         let spots = &self.deviation.source_on_target.spots;
+        let decimals = self.lengths().decimals_as_of_mm(2);
         let rows: Vec<Vec<Markup>> = spots
             .iter()
             .take(N_SPOTS)
@@ -74,7 +75,7 @@ impl Report<'_> {
             .map(|(i, spot)| {
                 let mut row = vec![cell((i + 1).to_string()), bare(spot.value)];
                 let at = self.on_crash(&spot.position);
-                row.extend(at.map(|x| cell(fixed(x, 2))));
+                row.extend(at.map(|x| cell(fixed(x, decimals))));
                 row
             })
             .collect();
@@ -115,7 +116,7 @@ impl Report<'_> {
         html! {
             (table(&self.lengths().axis(caption), &columns, &rows))
             @if n_more > 0 {
-                p.soft { (n_more) " more poses were dropped early." }
+                p.soft { (counted(n_more, "more pose")) " dropped early." }
             }
         }
     }
@@ -185,7 +186,7 @@ impl Report<'_> {
             .map(|(name, ms)| {
                 let width = (120.0 * ms / longest).round();
                 let bar = html! { span.meter style={ "width:" (width) "px" } {} };
-                vec![cell(name), cell(format!("{ms:.1} ms")), bar]
+                vec![cell(name), cell(millis(*ms)), bar]
             })
             .collect();
         let columns = [

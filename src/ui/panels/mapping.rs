@@ -399,12 +399,12 @@ fn lines(record: &MapRecord, lengths: Lengths) -> Vec<String> {
     lines.extend(mean("Thickness", &record.thickness, lengths.suffix()));
     lines.extend(mean("Plastic strain", &record.plastic_strain, ""));
     if let Some(back) = &record.map_back {
-        for (name, p95, range) in [
-            ("thickness", back.thickness_p95, back.thickness_range),
-            ("plastic strain", back.plastic_p95, back.plastic_range),
+        for (name, difference) in [
+            ("thickness", &back.thickness),
+            ("plastic strain", &back.plastic),
         ] {
-            if range > 0.0 {
-                let off = share(p95 / range);
+            if let Some(of_range) = difference.share_of_range() {
+                let off = share(of_range);
                 lines.push(format!(
                     "Mapped back onto the stamped part: {name} differs by {off} of its range (P95)"
                 ));

@@ -146,7 +146,7 @@ fn facts(state: &AppState, probe: &ProbeReport) -> String {
 
 /// Name of a quantity with its unit, where it has one that is known.
 pub(super) fn with_unit(state: &AppState, by: ColorBy) -> String {
-    match state.document.unit_of(by.forming()) {
+    match state.document.unit_of(Role::Crash, by.forming()) {
         Some(unit) => format!("{}, {unit}", by.label()),
         None => by.label().to_owned(),
     }

@@ -253,7 +253,9 @@ fn shown_value_text(over: &Overlay<'_>, hit: &Hit, value: Option<f64>) -> Option
             state.comparison().map(|_| class.label().to_owned())
         }
         (FieldKind::Uncertainty, Some(value)) => Some(format!("± {}", state.lengths().of(value))),
-        (FieldKind::Forming(value), Some(number)) => Some(forming_text(state, value, number)),
+        (FieldKind::Forming(value), Some(number)) => {
+            Some(forming_text(state, hit.role, value, number))
+        }
         (FieldKind::Map(picture), value) => map_text(state, picture, value),
         (_, value) => value.map(|value| state.lengths_of(hit.role).of(value)),
     }
@@ -270,7 +272,7 @@ fn map_text(state: &AppState, picture: MapPicture, value: Option<f64>) -> Option
             let text = match by {
                 ColorBy::Thickness => state.lengths().signed_of(number),
                 _ => {
-                    let unit = state.document.unit_of(by.forming());
+                    let unit = state.document.unit_of(Role::Crash, by.forming());
                     let unit = unit.map_or_else(String::new, |unit| format!("\u{a0}{unit}"));
                     signed(number) + &unit
                 }
@@ -294,7 +296,7 @@ fn map_text(state: &AppState, picture: MapPicture, value: Option<f64>) -> Option
 }
 
 /// A forming result with its name; stresses with the unit of the deck, if that is known.
-fn forming_text(state: &AppState, value: FormingValue, number: f64) -> String {
+fn forming_text(state: &AppState, role: Role, value: FormingValue, number: f64) -> String {
     let name = inside(value.label());
     if value == FormingValue::Thinning {
         return format!("{name} {}\u{a0}%", fixed(number, 1));
@@ -304,7 +306,7 @@ fn forming_text(state: &AppState, value: FormingValue, number: f64) -> String {
     }
     let unit = state
         .document
-        .stress_unit()
+        .stress_unit(role)
         .map_or_else(String::new, |unit| format!(" {unit}"));
     format!("{name} {}{unit}", length(number))
 }

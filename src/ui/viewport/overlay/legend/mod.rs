@@ -235,7 +235,8 @@ fn unit(over: &Overlay<'_>, kind: FieldKind) -> Option<String> {
         }
         _ => None,
     };
-    state.document.unit_of(value).map(str::to_owned)
+    let unit = state.document.unit_of(over.role(), value);
+    unit.map(str::to_owned)
 }
 
 fn is_measured(kind: FieldKind) -> bool {

@@ -1,0 +1,113 @@
+//! Crash parts that share nodes: pieces of one sheet, as those of a tailored blank, are parts of their own in a model.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::formats::Model;
+
+/// No part has a node yet.
+const NONE: u32 = u32::MAX;
+/// Parts that share fewer nodes share no edge.
+const LEAST_SHARED: usize = 2;
+
+/// The groups of two or more of the `chosen` parts that are joined along common nodes: all that hang together, and each
+/// two of more than two. Ids in ascending order. O(shells + groups).
+pub(super) fn joined_parts(model: &Model, chosen: &[u64]) -> BTreeSet<Vec<u64>> {
+    let chosen: BTreeSet<u64> = chosen.iter().copied().collect();
+    let is_chosen = model.parts.iter().map(|part| chosen.contains(&part.id));
+    let is_chosen: Vec<bool> = is_chosen.collect();
+    let mut first_at = vec![NONE; model.nodes.len()];
+    let mut n_shared: BTreeMap<(u32, u32), usize> = BTreeMap::new();
+    for shell in model.shells.iter().filter(|s| is_chosen[s.part as usize]) {
+        for &node in &shell.nodes[..if shell.is_triangle() { 3 } else { 4 }] {
+            match &mut first_at[node as usize] {
+                first if *first == NONE => *first = shell.part,
+                first if *first == shell.part => {}
+                first => {
+                    let pair = (shell.part.min(*first), shell.part.max(*first));
+                    *n_shared.entry(pair).or_default() += 1;
+                }
+            }
+        }
+    }
+    let joined = n_shared.into_iter().filter(|(_, n)| *n >= LEAST_SHARED);
+    let pairs: Vec<(u32, u32)> = joined.map(|(pair, _)| pair).collect();
+    let mut groups = hanging_together(&pairs);
+    groups.extend(pairs.iter().map(|&(a, b)| BTreeSet::from([a, b])));
+    let ids = |group: BTreeSet<u32>| {
+        let mut ids: Vec<u64> = group.iter().map(|&p| model.parts[p as usize].id).collect();
+        ids.sort_unstable();
+        ids
+    };
+    groups.into_iter().map(ids).collect()
+}
+
+/// What hangs together by pairs.
+fn hanging_together(pairs: &[(u32, u32)]) -> Vec<BTreeSet<u32>> {
+    let mut beside: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    for &(a, b) in pairs {
+        beside.entry(a).or_default().push(b);
+        beside.entry(b).or_default().push(a);
+    }
+    let mut groups = Vec::new();
+    while let Some((first, others)) = beside.pop_first() {
+        let mut group = BTreeSet::from([first]);
+        let mut open = others;
+        while let Some(part) = open.pop() {
+            if group.insert(part) {
+                open.extend(beside.remove(&part).unwrap_or_default());
+            }
+        }
+        groups.push(group);
+    }
+    groups
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::model::{Nodes, Part, Shell};
+    use crate::geometry::Point3;
+
+    /// Squares in a row, each of a part; the corners of two beside each other are the same nodes unless they are cut.
+    fn row(parts: &[u64], cut_after: &[usize]) -> Model {
+        let mut n_nodes = 2;
+        let mut shells = Vec::new();
+        for at in 0..parts.len() {
+            if at > 0 && cut_after.contains(&(at - 1)) {
+                n_nodes += 2;
+            }
+            let a = n_nodes as u32 - 2;
+            shells.push(Shell {
+                id: at as u64 + 1,
+                nodes: [a, a + 2, a + 3, a + 1],
+                part: at as u32,
+            });
+            n_nodes += 2;
+        }
+        let ids = (1..=n_nodes as u64).collect();
+        Model {
+            nodes: Nodes::new(ids, vec![Point3::origin(); n_nodes]).0,
+            shells,
+            parts: parts
+                .iter()
+                .map(|&id| Part {
+                    id,
+                    ..Part::default()
+                })
+                .collect(),
+            ..Model::default()
+        }
+    }
+
+    #[test]
+    fn parts_that_share_an_edge_are_joined() {
+        let model = row(&[30, 10, 20, 40, 50], &[2]);
+        let all = [10, 20, 30, 40, 50];
+        let groups: Vec<Vec<u64>> = joined_parts(&model, &all).into_iter().collect();
+        let expected = [vec![10, 20], vec![10, 20, 30], vec![10, 30], vec![40, 50]];
+        assert_eq!(groups, expected);
+        // What is not chosen joins nothing.
+        let without = joined_parts(&model, &[20, 30, 40]);
+        assert!(without.is_empty(), "{without:?}");
+    }
+}
