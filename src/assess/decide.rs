@@ -130,8 +130,8 @@ pub(super) fn decide_with(assessment: &mut Assessment, reason: Reason) {
 /// The statement about the pose that follows from the reasons.
 fn pose_kind(reasons: &[Reason]) -> PoseKind {
     let of = |reason: &Reason| match reason {
-        Reason::EndedEarly { .. } => PoseKind::NotFound,
-        Reason::Shape { .. } if reason.severity() == Verdict::Poor => PoseKind::NotFound,
+        // Of another part, the other hand or another unit there is no pose, however well this one is held.
+        poor if poor.severity() == Verdict::Poor => PoseKind::NotFound,
         Reason::EqualAlternative { .. }
         | Reason::NearAlternative { .. }
         | Reason::AlikeParts { .. } => PoseKind::Ambiguous,
@@ -378,6 +378,17 @@ mod tests {
     use super::*;
     use crate::assess::OneSided;
     use crate::geometry::Point3;
+
+    #[test]
+    fn a_poor_match_has_found_no_pose() {
+        let opposite = Reason::OppositeHand {
+            score_ratio: 0.5,
+            by_borders: true,
+        };
+        assert_eq!(pose_kind(&[Reason::Stopped, opposite]), PoseKind::NotFound);
+        assert_eq!(pose_kind(&[Reason::Stopped]), PoseKind::Uncertain);
+        assert_eq!(pose_kind(&[]), PoseKind::Certain);
+    }
 
     fn shape(remainder: f64, reasons: &[ShapeReason]) -> ShapeStatement {
         let tolerance = ShapeTolerance {

@@ -299,7 +299,11 @@ impl ShapeKind {
 impl ShapeStatement {
     /// "same part, deformed: bend and twist 0.63 of 5.00 mm, remainder 0.13 of 1.00 mm".
     pub fn words(&self, lengths: Lengths) -> String {
-        let label = self.kind.label();
+        let is_bent = self.springback.max(self.remainder) > self.tolerance.unremarkable();
+        let label = match self.kind {
+            ShapeKind::Deformed if self.offset.is_some() && !is_bent => "same surface at an offset",
+            kind => kind.label(),
+        };
         if !self.remainder.is_finite() {
             return label.to_owned();
         }

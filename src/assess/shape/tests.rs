@@ -113,6 +113,8 @@ fn an_offset_of_a_section_with_walls_is_told_apart() {
     let offset = shape.offset.unwrap();
     assert!(shape.is_offset_separable);
     assert!((offset - 0.7).abs() < 0.1, "{shape:?}");
+    let words = shape.words(Lengths::new(None));
+    assert!(words.starts_with("same surface at an offset: "), "{words}");
 }
 
 /// A sheet of 1,000 by 500 mm with shallow waves, cut off at both ends and both sides by `cut` and stretched
