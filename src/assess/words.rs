@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 
 use super::deviation::{ConstantOffset, OffsetKind, OverlapClass};
 use super::{
-    FreeMotion, FreeMotionKind, PartAxis, PartDirection, PoseKind, PoseStatement, PoseUncertainty,
-    Reason, ShapeKind, ShapeReason, ShapeStatement, Twin, TwinAxis, Verdict,
+    BorderFit, FreeMotion, FreeMotionKind, PartAxis, PartDirection, PoseKind, PoseStatement,
+    PoseUncertainty, Reason, ShapeKind, ShapeReason, ShapeStatement, Twin, TwinAxis, Verdict,
 };
 use crate::geometry::{Point3, Vector3};
 use crate::registration::{Termination, UnitGuess};
@@ -326,11 +326,30 @@ impl ShapeStatement {
             ),
             _ => String::new(),
         };
+        let holes = self.holes_of_one_part();
         format!(
-            "{label}: bend and twist {}, remainder {}{offset}{trim}",
+            "{label}: bend and twist {}, remainder {}{offset}{trim}{holes}",
             lengths.within(self.springback, self.tolerance.springback),
             lengths.within(self.remainder, self.tolerance.remainder)
         )
+    }
+}
+
+impl ShapeStatement {
+    /// ", 2 holes in the stamped part only" where one part has holes that the other lacks, as before the last piercing,
+    /// which is no difference of the shapes.
+    fn holes_of_one_part(&self) -> String {
+        let BorderFit {
+            only_source,
+            only_target,
+            ..
+        } = self.borders;
+        let (n, role) = match (only_source, only_target) {
+            (n @ 1.., 0) => (n, "stamped"),
+            (0, n @ 1..) => (n, "crash"),
+            _ => return String::new(),
+        };
+        format!(", {} in the {role} part only", counted(n, "hole"))
     }
 }
 

@@ -11,6 +11,7 @@ use shapematch::geometry::camera::{Covered, StandardView};
 use shapematch::geometry::{Point3, Similarity, TriMesh, Vector3};
 use shapematch::jobs::*;
 use shapematch::monitor::Monitor;
+use shapematch::pipeline::forming_values::FormingValue;
 use shapematch::pipeline::load::{LoadSettings, prepare};
 use shapematch::pipeline::match_parts::MatchRun;
 use shapematch::registration::starts::{Start, StartKind};
@@ -111,6 +112,8 @@ fn read(source: &PartSource, settings: &LoadSettings) -> Result<LoadedPartAndFac
         "metres.k" => model(20, 0.001, true),
         "inches.k" => model(24, 1.0 / 25.4, false),
         "says_mm.k" => stated(model(24, 1.0, false), "units: mm", b"1"),
+        "says_gpa.k" => stated(model(20, 1.0, true), "units: kg-mm-ms", b"3"),
+        "says_mpa.k" => stated(model(24, 1.0, false), "units: ton-mm-s", b"4"),
         "says_m.k" => stated(model(20, 0.001, true), "units: m", b"2"),
         other => return Err(format!("cannot read the file: {other:?}")),
     };
@@ -2342,6 +2345,23 @@ fn rows_of_a_sweep_are_shown_while_it_runs_and_cancel_brings_the_old_ones_back()
     assert_eq!(shown.n_triangles, window.mesh(Role::Stamped).n_triangles());
     window.apply(MatchCommand::Cancel);
     assert!(window.state.shown_sweep().is_none());
+}
+
+/// A file's stresses stay in its own unit, so each window says that of its own file.
+#[test]
+fn stresses_are_in_the_unit_of_their_file() {
+    let mut window = Window::new();
+    window.open("says_mpa.k", Role::Crash);
+    window.open("stamped.k", Role::Stamped);
+    let unit = |window: &Window, role| {
+        let stress = Some(FormingValue::VonMises);
+        window.state.document.unit_of(role, stress)
+    };
+    // What only one file says is taken for both.
+    assert_eq!(unit(&window, Role::Stamped), Some("MPa"));
+    window.open("says_gpa.k", Role::Stamped);
+    assert_eq!(unit(&window, Role::Stamped), Some("GPa"));
+    assert_eq!(unit(&window, Role::Crash), Some("MPa"));
 }
 
 #[test]

@@ -2,7 +2,10 @@
 
 use super::as_well;
 use super::ratio::{alternative_words, error_beside, fit_beside};
-use crate::assess::{FreeMotion, FreeMotionKind, PoseKind, Reason, Verdict};
+use crate::assess::tolerance::ShapeTolerance;
+use crate::assess::{
+    FreeMotion, FreeMotionKind, PoseKind, Reason, ShapeKind, ShapeStatement, Verdict,
+};
 use crate::geometry::{Point3, Vector3};
 use crate::text::{Lengths, whole_percent};
 
@@ -16,6 +19,27 @@ fn equally_is_said_only_of_what_rounds_to_no_difference() {
         (0.98, "at least as well"),
     ] {
         assert_eq!(as_well(ratio), words);
+    }
+}
+
+/// They are no difference of the shapes, and worth a look.
+#[test]
+fn holes_of_one_part_alone_are_told() {
+    let nothing = ShapeStatement::nothing_met(ShapeTolerance {
+        remainder: 1.0,
+        springback: 5.0,
+    });
+    let words = |only_source, only_target| {
+        let mut shape = nothing.clone();
+        (shape.kind, shape.remainder) = (ShapeKind::Same, 0.1);
+        (shape.borders.only_source, shape.borders.only_target) = (only_source, only_target);
+        shape.words(Lengths::new(None))
+    };
+    assert!(words(2, 0).ends_with("of 1.00, 2 holes in the stamped part only"));
+    assert!(words(0, 1).ends_with(", 1 hole in the crash part only"));
+    // Where each part has some, that is a reason of its own.
+    for of_both in [[0, 0], [1, 2]] {
+        assert!(!words(of_both[0], of_both[1]).contains("hole"));
     }
 }
 
