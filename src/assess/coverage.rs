@@ -43,6 +43,16 @@ pub struct Coverage {
 }
 
 impl Coverage {
+    /// Of the nodes of source and target.
+    fn of(measured: [Vec<Measured>; 2], limit: f64) -> Self {
+        let [source_on_target, target_on_source] = measured.map(|nodes| one_sided(nodes, limit));
+        Self {
+            source_on_target,
+            target_on_source,
+            limit,
+        }
+    }
+
     /// Overlap of the part that is covered better: 1 if one contains the other.
     pub fn better_overlap(&self) -> f64 {
         let (a, b) = (self.source_on_target.overlap, self.target_on_source.overlap);
@@ -83,44 +93,33 @@ pub fn coverage(
     limit: f64,
     monitor: &Monitor,
 ) -> Result<Coverage, Cancelled> {
-    let (coverage, _) = coverage_and_far(
-        [source, target],
-        target_from_source,
-        limit,
-        NOWHERE,
-        monitor,
-    )?;
-    Ok(coverage)
+    let measured = measured_both([source, target], target_from_source, monitor)?;
+    Ok(Coverage::of(measured, limit))
 }
 
-/// Nodes of source and target that lie within a range of distances from the other part.
-pub(super) type FarNodes = [Vec<u32>; 2];
+/// Nodes of a part that lie within a range of distances from the other one.
+#[derive(Debug, Clone, Default)]
+pub(super) struct FarNodes {
+    pub(super) nodes: Vec<u32>,
+    /// How many nodes of the mesh each stands for.
+    pub(super) per_node: usize,
+}
 
-/// No distance lies there.
-const NOWHERE: [f64; 2] = [f64::INFINITY; 2];
-
-/// [`coverage`] with the nodes that lie farther apart than the first and no farther than the second of two distances, in
-/// target length units.
+/// [`coverage`] with the nodes of source and target that lie farther apart than the first and no farther than the second
+/// of two distances, in target length units.
 pub(super) fn coverage_and_far(
-    [source, target]: [&Surface; 2],
+    pair: [&Surface; 2],
     target_from_source: &Similarity,
     limit: f64,
     far: [f64; 2],
     monitor: &Monitor,
-) -> Result<(Coverage, FarNodes), Cancelled> {
-    let back = target_from_source.inverse();
-    let scale = target_from_source.scale;
-    let of_source = measured([source, target], (target_from_source, 1.0), monitor)?;
-    let of_target = measured([target, source], (&back, scale), monitor)?;
-    let far_nodes = [&of_source, &of_target].map(|nodes| far_of(nodes, far));
-    let [source_on_target, target_on_source] =
-        [of_source, of_target].map(|nodes| one_sided(nodes, limit));
-    let coverage = Coverage {
-        source_on_target,
-        target_on_source,
-        limit,
-    };
-    Ok((coverage, far_nodes))
+) -> Result<(Coverage, [FarNodes; 2]), Cancelled> {
+    let measured = measured_both(pair, target_from_source, monitor)?;
+    let far = [0, 1].map(|side| FarNodes {
+        nodes: far_of(&measured[side], far),
+        per_node: step_of(pair[side]),
+    });
+    Ok((Coverage::of(measured, limit), far))
 }
 
 /// Overlap of both directions, source first, from at most `n_points` nodes of each mesh: for a number that
@@ -159,8 +158,33 @@ const RUN: usize = 256;
 /// Nodes of one mesh that are measured; more change no share by a thousandth.
 const MOST_NODES: usize = 250_000;
 
-/// A node, its distance from the other part in target lengths, and its area.
-type Measured = (u32, f64, f64);
+/// A node that was measured.
+#[derive(Debug, Clone, Copy)]
+struct Measured {
+    node: u32,
+    /// From the other part, in target lengths.
+    distance: f64,
+    area: f64,
+}
+
+/// The nodes of source and target, each measured against the other part.
+fn measured_both(
+    [source, target]: [&Surface; 2],
+    target_from_source: &Similarity,
+    monitor: &Monitor,
+) -> Result<[Vec<Measured>; 2], Cancelled> {
+    let (back, scale) = (target_from_source.inverse(), target_from_source.scale);
+    Ok([
+        measured([source, target], (target_from_source, 1.0), monitor)?,
+        measured([target, source], (&back, scale), monitor)?,
+    ])
+}
+
+/// Of so many nodes of a mesh one is measured.
+fn step_of(surface: &Surface) -> usize {
+    let n_nodes = surface.mesh().positions().len();
+    n_nodes.div_ceil(MOST_NODES).max(1)
+}
 
 /// `unit` turns distances measured in the model's frame into target lengths.
 fn measured(
@@ -169,16 +193,18 @@ fn measured(
     monitor: &Monitor,
 ) -> Result<Vec<Measured>, Cancelled> {
     let positions = data.mesh().positions();
-    let step = positions.len().div_ceil(MOST_NODES).max(1);
-    let nodes: Vec<usize> = (0..positions.len()).step_by(step).collect();
+    let nodes: Vec<usize> = (0..positions.len()).step_by(step_of(data)).collect();
     let distances = |run: &[usize]| {
         let mut near = None;
         let distance = |&node: &usize| {
             let moved = model_from_data.apply(&positions[node]);
             let hit = model.bvh().closest(&moved, f64::INFINITY, near, None);
             near = hit.map(|hit| hit.triangle);
-            let distance = hit.map_or(f64::INFINITY, |hit| hit.distance_sq.sqrt() * unit);
-            (node as u32, distance, data.vertex_areas()[node])
+            Measured {
+                node: node as u32,
+                distance: hit.map_or(f64::INFINITY, |hit| hit.distance_sq.sqrt() * unit),
+                area: data.vertex_areas()[node],
+            }
         };
         run.iter().map(distance).collect::<Vec<_>>()
     };
@@ -191,25 +217,29 @@ fn measured(
     Ok(measured)
 }
 
-fn far_of(nodes: &[Measured], [from, to]: [f64; 2]) -> Vec<u32> {
-    let is_far = |(_, distance, _): &&Measured| *distance > from && *distance <= to;
-    nodes
+fn far_of(measured: &[Measured], [from, to]: [f64; 2]) -> Vec<u32> {
+    let far = measured
         .iter()
-        .filter(is_far)
-        .map(|(node, ..)| *node)
-        .collect()
+        .filter(|m| m.distance > from && m.distance <= to);
+    far.map(|m| m.node).collect()
 }
 
 fn one_sided(mut measured: Vec<Measured>, limit: f64) -> OneSided {
-    measured.par_sort_unstable_by(|a, b| a.1.total_cmp(&b.1).then(a.2.total_cmp(&b.2)));
-    let total: f64 = measured.iter().map(|(.., area)| area).sum();
-    let n_within = measured.partition_point(|(_, distance, _)| *distance <= limit);
+    measured.par_sort_unstable_by(|a, b| {
+        let by_distance = a.distance.total_cmp(&b.distance);
+        by_distance.then(a.area.total_cmp(&b.area))
+    });
+    let total: f64 = measured.iter().map(|m| m.area).sum();
+    let n_within = measured.partition_point(|m| m.distance <= limit);
     let within = &measured[..n_within];
-    let covered: f64 = within.iter().map(|(.., area)| area).sum();
-    let sum_sq: f64 = within.iter().map(|(_, d, area)| d * d * area).sum();
+    let covered: f64 = within.iter().map(|m| m.area).sum();
+    let sum_sq: f64 = within
+        .iter()
+        .map(|m| m.distance * m.distance * m.area)
+        .sum();
     let mut running = 0.0;
-    let p95 = within.iter().find(|(.., area)| {
-        running += area;
+    let p95 = within.iter().find(|m| {
+        running += m.area;
         running >= 0.95 * covered
     });
     OneSided {
@@ -219,8 +249,8 @@ fn one_sided(mut measured: Vec<Measured>, limit: f64) -> OneSided {
         } else {
             0.0
         },
-        p95: p95.map_or(0.0, |(_, distance, _)| *distance),
-        max: within.last().map_or(0.0, |(_, distance, _)| *distance),
-        max_anywhere: measured.last().map_or(0.0, |(_, distance, _)| *distance),
+        p95: p95.map_or(0.0, |m| m.distance),
+        max: within.last().map_or(0.0, |m| m.distance),
+        max_anywhere: measured.last().map_or(0.0, |m| m.distance),
     }
 }

@@ -23,7 +23,7 @@ pub(crate) struct PoseEvidence<'a> {
     /// The largest offset between two skins of one sheet.
     pub(super) most_offset: f64,
     /// Nodes of both parts that lie farther apart than the tolerance, where all were measured; else none.
-    pub(super) far: FarNodes,
+    pub(super) far: [FarNodes; 2],
 }
 
 impl PoseEvidence<'_> {
@@ -57,7 +57,7 @@ impl PoseEvidence<'_> {
         let search = self.search();
         let [of_source, of_target] = &self.far;
         [(true, of_source), (false, of_target)]
-            .map(|(of_source, nodes)| search.of_nodes(&self.pose, of_source, nodes))
+            .map(|(of_source, far)| search.of_nodes(&self.pose, of_source, &far.nodes))
     }
 
     /// Places of the smaller part that lie over a place of the larger one, where neither meets anything.
@@ -108,7 +108,7 @@ impl<'a, 'b> EvidenceSearch<'a, 'b> {
             noise: self.noise,
             reach: self.contacts.reach(),
             most_offset: self.most_offset,
-            far: FarNodes::default(),
+            far: Default::default(),
         })
     }
 }

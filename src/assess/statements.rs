@@ -45,7 +45,7 @@ pub(super) struct Asked<'a> {
     /// The motion that the surfaces leave free.
     pub(super) motion: Option<&'a FreeMotion>,
     /// Nodes that lie far apart, where all of them were measured.
-    pub(super) far: FarNodes,
+    pub(super) far: [FarNodes; 2],
 }
 
 /// Both statements. O(border edges + nodes · log triangles).

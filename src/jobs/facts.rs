@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::formats::{Model, PartSummary};
 use crate::geometry::{Aabb, Landmarks, Vector3};
 use crate::monitor::{Cancelled, Monitor};
+use crate::pipeline::joined_parts::joined_parts;
 use crate::pipeline::likeness::{Moments, moments_of_parts};
 use crate::pipeline::load::LoadedPart;
 
@@ -21,6 +22,8 @@ pub struct PartFacts {
     pub part_bounds: BTreeMap<u64, Aabb>,
     /// Area and spread of each part of the deck that has shells, in the crash model's unit.
     pub moments: BTreeMap<u64, Moments>,
+    /// Parts in use that share nodes, as [`joined_parts`] groups them.
+    pub joined: BTreeSet<Vec<u64>>,
     /// Box around the mesh.
     pub bounds: Aabb,
     /// Area of the mesh.
@@ -69,9 +72,13 @@ impl PartFacts {
         let part_bounds = part_bounds(part);
         monitor.check()?;
         let moments = moments_of_parts(model, part.settings.length_factor, monitor)?;
+        let used = part.chosen_part_ids().into_iter().collect();
+        let joined = joined_parts(model, &used);
+        monitor.check()?;
         Ok(Self {
             parts,
-            used: part.chosen_part_ids().into_iter().collect(),
+            used,
+            joined,
             tools: model.tools().into_iter().collect(),
             part_bounds,
             moments,

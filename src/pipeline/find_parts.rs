@@ -1,7 +1,6 @@
 //! The parts of a crash model that a stamped part belongs to, found by likeness and by matches.
 
 mod fit;
-mod joined;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -10,7 +9,10 @@ use std::time::Instant;
 pub use fit::{Fit, Presence};
 
 use super::error::unless_cancelled;
-use super::likeness::{AS_ALIKE, Moments, Signature, moments_of_parts, more_alike};
+use super::joined_parts::joined_parts;
+use super::likeness::{
+    AS_ALIKE, Moments, Signature, joined_signatures, moments_of_parts, more_alike,
+};
 use super::load::{LoadedPart, prepare};
 use super::match_parts::{MatchRecipe, MatchRun, match_parts};
 use super::{PipelineError, millis_since};
@@ -22,7 +24,6 @@ use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{Hand, UnitGuess, guess_unit};
 use crate::role::PerRole;
 use crate::search::ClosestPoint as _;
-use joined::joined_parts;
 
 /// Choices of crash parts that are matched at most, the most alike first.
 const MOST_TRIED: usize = 12;
@@ -191,7 +192,7 @@ pub fn is_part_open(parts: PerRole<&LoadedPart>) -> bool {
     let candidates = signatures.candidates().into_iter();
     let (some, all): (Vec<_>, Vec<_>) = candidates.partition(|(_, ids)| ids.len() < n_chosen);
     let all = all.first().map_or(0.0, |(likeness, _)| *likeness);
-    let some = some.into_iter().map(|(likeness, ids)| (ids[0], likeness));
+    let some = some.into_iter().map(|(likeness, ids)| (ids, likeness));
     !more_alike(some, all).is_empty()
 }
 
@@ -393,19 +394,15 @@ impl Signatures {
                 crash.push((vec![row.id], own));
             }
         }
-        for ids in joined_parts(&parts.crash.model, &used.crash) {
-            monitor.check()?;
-            if ids.len() == used.crash.len() {
-                continue;
-            }
-            let rows = summaries.iter().filter(|row| ids.contains(&row.id));
-            let thickness = mean_of(rows.filter_map(|row| {
-                let area = moments.crash.get(&row.id)?.area();
-                Some((parts.crash.lengthened(row.thickness)?, area))
-            }));
-            let own = all_of(&ids, &moments.crash).signature(thickness);
-            crash.extend(own.map(|own| (ids, own)));
-        }
+        monitor.check()?;
+        let chosen = used.crash.iter().copied().collect();
+        let joined = joined_parts(&parts.crash.model, &chosen);
+        let rows: BTreeMap<u64, Option<f64>> = summaries
+            .iter()
+            .map(|row| (row.id, row.thickness))
+            .collect();
+        let thickness = |id| parts.crash.lengthened(*rows.get(&id)?);
+        crash.extend(joined_signatures(&joined, &moments.crash, thickness));
         if used.crash.len() > 1 {
             let together = all_of(&used.crash, &moments.crash);
             if let Some(together) = together.signature(parts.crash.mean_thickness()) {
@@ -437,14 +434,6 @@ impl Signatures {
         found.sort_by(|a, b| b.0.total_cmp(&a.0));
         found
     }
-}
-
-/// Mean of values with their areas; `None` without any.
-fn mean_of(values: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
-    let (sum, area) = values.fold((0.0, 0.0), |(sum, all), (value, area)| {
-        (sum + value * area, all + area)
-    });
-    (area > 0.0).then(|| sum / area)
 }
 
 /// Parts of which more than half lies on what the found ones leave of the stamped part.

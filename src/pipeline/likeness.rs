@@ -3,7 +3,7 @@
 //! A crash model has thousands of parts. Comparing three or four numbers of each names the few that
 //! a stamped part can belong to; the match then decides.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::formats::Model;
 use crate::geometry::chunks::for_chunks;
@@ -53,11 +53,6 @@ impl Moments {
             first: self.first + other.first,
             second: self.second + other.second,
         }
-    }
-
-    /// The area.
-    pub fn area(&self) -> f64 {
-        self.area
     }
 
     /// Area and edges, which no motion changes; `None` without area.
@@ -117,17 +112,39 @@ const ALIKE: f64 = 0.5;
 /// Parts about as alike as the most alike one may be meant as well: copies of it, and the other side of the car.
 pub(super) const AS_ALIKE: f64 = 0.97;
 
-/// Of the likenesses of several parts to another, the most alike part and those that are about as alike, by their ids, if
-/// each alone is more like it than all `together` are.
-pub fn more_alike(of_parts: impl IntoIterator<Item = (u64, f64)>, together: f64) -> Vec<u64> {
+/// The signatures of `joined` parts, each group taken as one part whose thickness is the mean over the area.
+pub fn joined_signatures(
+    joined: &BTreeSet<Vec<u64>>,
+    moments: &BTreeMap<u64, Moments>,
+    thickness: impl Fn(u64) -> Option<f64>,
+) -> Vec<(Vec<u64>, Signature)> {
+    let signature = |ids: &Vec<u64>| {
+        let (mut all, mut sum, mut area) = (Moments::default(), 0.0, 0.0);
+        for id in ids {
+            let own = moments.get(id)?;
+            all = all.and(own);
+            if let Some(thickness) = thickness(*id) {
+                sum += thickness * own.area;
+                area += own.area;
+            }
+        }
+        let mean = (area > 0.0).then(|| sum / area);
+        Some((ids.clone(), all.signature(mean)?))
+    };
+    joined.iter().filter_map(signature).collect()
+}
+
+/// Of the likenesses of several choices of parts to another part, the most alike choice and those that are about as alike,
+/// in their order, if each is more like it than all parts `together` are.
+pub fn more_alike<C: Ord>(of_choices: impl IntoIterator<Item = (C, f64)>, together: f64) -> Vec<C> {
     let least = ALIKE.max(together);
-    let of_parts = of_parts.into_iter();
-    let mut found: Vec<(u64, f64)> = of_parts.filter(|(_, own)| *own > least).collect();
+    let of_choices = of_choices.into_iter();
+    let mut found: Vec<(C, f64)> = of_choices.filter(|(_, own)| *own > least).collect();
     let best = found.iter().fold(0.0, |best, (_, own)| own.max(best));
     found.retain(|(_, own)| *own >= AS_ALIKE * best);
-    let mut ids: Vec<u64> = found.into_iter().map(|(id, _)| id).collect();
-    ids.sort_unstable();
-    ids
+    let mut choices: Vec<C> = found.into_iter().map(|(choice, _)| choice).collect();
+    choices.sort_unstable();
+    choices
 }
 
 /// What is compared.

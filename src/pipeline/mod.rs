@@ -10,6 +10,7 @@ pub mod find_parts;
 pub mod forming_values;
 pub mod id_map;
 pub mod inspect;
+pub mod joined_parts;
 pub mod likeness;
 pub mod load;
 pub mod map;

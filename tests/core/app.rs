@@ -435,7 +435,7 @@ fn a_deck_of_several_parts_asks_which_of_them_is_matched() {
     assert!(window.state.part_question().is_none(), "like what?");
     window.open("stamped.k", Role::Stamped);
     let asked = window.state.part_question().unwrap();
-    assert_eq!((&asked.ids[..], asked.n_used), (&[22][..], 3));
+    assert_eq!((asked.only(), asked.n_used), (Some(&[22][..]), 3));
     window.apply(PartCommand::UseAll(Role::Crash));
     assert!(window.state.part_question().is_none(), "it was answered");
 
@@ -2345,6 +2345,25 @@ fn rows_of_a_sweep_are_shown_while_it_runs_and_cancel_brings_the_old_ones_back()
     assert_eq!(shown.n_triangles, window.mesh(Role::Stamped).n_triangles());
     window.apply(MatchCommand::Cancel);
     assert!(window.state.shown_sweep().is_none());
+}
+
+/// A sweep that was stopped has the rows so far and does not claim more.
+#[test]
+fn a_stopped_sweep_does_not_say_that_it_finished() {
+    let swept = |stops: bool| {
+        let mut window = Window::with_both();
+        window.holds = true;
+        window.apply(MatchCommand::Sweep(Box::default()));
+        if stops {
+            window.apply(MatchCommand::Stop);
+        }
+        let (id, kind, stamp) = window.held.remove(0);
+        let done = JobOutput::Swept(Arc::default());
+        window.tell(id, kind.key(), stamp, JobStage::Finished(done));
+        window.state.log.rows().last().unwrap().text.clone()
+    };
+    assert_eq!(swept(false), "sweep finished");
+    assert!(swept(true).starts_with("sweep stopped"), "{}", swept(true));
 }
 
 /// A file's stresses stay in its own unit, so each window says that of its own file.

@@ -27,7 +27,7 @@ fn a_match_of_a_whole_model_tries_the_most_alike_parts_alone() {
     let mut window = Window::with_files_of(folder.path(), really);
     let n_parts = window.part(Role::Crash).facts.used.len();
     assert!(n_parts > 2, "{n_parts}");
-    let asked_part = |window: &Window| Some(window.state.part_question()?.single()?.id);
+    let asked_part = |window: &Window| window.state.part_question()?.only()?.first().copied();
     let asked = asked_part(&window);
     window.act(Action::MatchOrStop);
     let used = &window.part(Role::Crash).facts.used;
@@ -61,7 +61,7 @@ fn parts_that_share_nodes_are_found_as_one_sheet() {
     let folder = tempfile::tempdir().unwrap();
     write_bracket(folder.path(), SampleVariant::WholeModel);
     let window = Window::with_files_of(folder.path(), really);
-    let id = window.state.part_question().unwrap().single().unwrap().id;
+    let id = window.state.part_question().unwrap().only().unwrap()[0];
     let path = window.part(Role::Crash).loaded.path.clone();
     let deck = std::fs::read_to_string(&path).unwrap();
     let (own, other) = (format!("{id:>8}"), format!("{:>8}", 77));
@@ -84,6 +84,12 @@ fn parts_that_share_nodes_are_found_as_one_sheet() {
     }
     std::fs::write(&path, split).unwrap();
     let mut window = Window::with_files_of(folder.path(), really);
+    let question = window.state.part_question().unwrap();
+    assert_eq!(question.only(), Some(&[77, id][..]));
+    assert_eq!(question.title(&window.state.document), format!("77 + {id}"));
+    window.apply(PartCommand::UseMostAlike);
+    assert_eq!(window.part(Role::Crash).facts.used.len(), 2);
+    window.act(Action::Undo);
     window.act(Action::MatchOrStop);
     let used: Vec<u64> = window
         .part(Role::Crash)
@@ -240,7 +246,7 @@ fn which_of_several_parts_is_meant_stays_open_until_the_user_has_chosen() {
     let mut window = window_of_twice(folder.path());
     // Of parts that are equally alike none is proposed.
     let asked = window.state.part_question().unwrap();
-    assert_eq!(asked.single(), None);
+    assert_eq!(asked.only(), None);
     assert_eq!(asked.title(&window.state.document), "2000040, 52000040");
     for _ in 0..2 {
         assert_eq!(verdict_of(&mut window), Verdict::Check);

@@ -307,6 +307,12 @@ fn ids_that_both_files_have_are_offset_on_the_cards() {
     let folder = pair();
     let at = |name: &str| folder.path().join(name);
     fs::copy(at("mesh.k"), at("same.k")).unwrap();
+    // The transformation on the cards gets an id that none of these has.
+    for (name, id) in [("mesh.k", 1), ("same.k", 2)] {
+        let moves = format!("*DEFINE_TRANSFORMATION\n{id:>10}\n    TRANSL      77.0\n*END");
+        let deck = fs::read_to_string(at(name)).unwrap();
+        fs::write(at(name), deck.replace("*END", &moves)).unwrap();
+    }
     let line = [
         "match",
         "mesh.k",
@@ -328,6 +334,7 @@ fn ids_that_both_files_have_are_offset_on_the_cards() {
     assert_eq!(both.nodes.len(), 2 * one.nodes.len());
     assert_eq!(both.shells.len(), 2 * one.shells.len());
     assert_eq!(both.parts.len(), 2 * one.parts.len());
+    assert_eq!(both.transformations.len(), 3, "{:?}", both.transformations);
     let found: Vec<String> = both.diagnostics.iter().map(ToString::to_string).collect();
     assert!(
         !found.iter().any(|told| told.contains("defined again")),

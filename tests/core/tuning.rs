@@ -63,6 +63,7 @@ const MODULES: &[(&[&str], &str, &str)] = &[
         &[
             "pipeline/find_parts.rs",
             "pipeline/find_parts",
+            "pipeline/joined_parts.rs",
             "pipeline/likeness.rs",
         ],
         "Which parts belong together",

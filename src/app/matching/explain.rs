@@ -1,6 +1,7 @@
 //! Why a match is weak: the likely causes with their evidence, and a remedy for each.
 
 use super::Failure;
+use crate::app::parts::together;
 use crate::app::{
     Action, AppState, BottomTab, Command, MatchCommand, MatchResult, PartCommand, ViewCommand,
 };
@@ -170,15 +171,16 @@ impl AppState {
             return several_parts_cause(assessment);
         };
         let title = more.title(&self.document);
-        let evidence = match more.single() {
-            Some(_) => format!("{title} alone is more like the stamped part than all together."),
+        let evidence = match more.only() {
+            Some([_]) => format!("{title} alone is more like the stamped part than all together."),
+            Some(_) => format!("{title} alone are more like the stamped part than all together."),
             None => format!(
                 "Each of {title} alone is more like the stamped part than all together: choose one."
             ),
         };
-        let remedy = more.single().map(|part| {
-            let commands = vec![PartCommand::UseOnly(part).into()];
-            (format!("Match only {}", part.id), commands)
+        let remedy = more.only().map(|ids| {
+            let commands = vec![PartCommand::UseMostAlike.into()];
+            (format!("Match only {}", together(ids)), commands)
         });
         Some(Cause {
             title: matched_as_one(more.n_used),

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{PartCommand, PartRef, PartsState};
+use super::{MoreAlike, PartCommand, PartRef, PartsState};
 use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
 use crate::app::{AppState, Document, Effect, JobBoard, Part};
@@ -73,6 +73,14 @@ impl PartsState {
             PartCommand::SetUsed(part, is_used) => return self.set_used(work, part, is_used),
             PartCommand::UseOnly(part) => {
                 return self.use_parts(work, part.role, Selection::Parts(vec![part.id]));
+            }
+            PartCommand::UseMostAlike => {
+                let more = self.more_alike.as_ref();
+                let more = more.and_then(|more| more.current(work.document));
+                if let Some(ids) = more.and_then(MoreAlike::only) {
+                    let selection = Selection::Parts(ids.to_vec());
+                    return self.use_parts(work, Role::Crash, selection);
+                }
             }
             PartCommand::MatchOnly(part) => return self.match_only(work, part),
             PartCommand::UseAll(role) => {

@@ -81,6 +81,9 @@ pub enum PartCommand {
     UseOnly(PartRef),
     /// The same, and match at once.
     MatchOnly(PartRef),
+    /// Match the part of the crash model that is most like the stamped part, or the parts that are one sheet, and no
+    /// other; nothing where several are as alike.
+    UseMostAlike,
     /// Match all parts of a deck.
     UseAll(Role),
     /// Sort the other deck's parts by likeness, or all as in the files.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::{PartRef, PartsState};
 use crate::app::{AppState, Document, OfParts};
 use crate::formats::Selection;
-use crate::pipeline::likeness::{Moments, Signature, more_alike};
+use crate::pipeline::likeness::{Moments, Signature, joined_signatures, more_alike};
 use crate::role::{PerRole, Role};
 
 /// A crash model of so many parts is sorted as soon as the stamped part is known.
@@ -53,43 +53,48 @@ impl AppState {
 }
 
 /// The part of the crash model that is more like the stamped part than all that are matched together, or several that are
-/// about equally alike.
+/// about equally alike. Parts that share nodes count as one, too.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MoreAlike {
-    /// Their ids.
-    pub ids: Vec<u64>,
+    /// The ids of each.
+    pub choices: Vec<Vec<u64>>,
     /// Crash parts that are matched now.
     pub n_used: usize,
 }
 
 impl MoreAlike {
-    /// The part, if it is one.
-    pub fn single(&self) -> Option<PartRef> {
-        match self.ids[..] {
-            [id] => Some(PartRef {
-                role: Role::Crash,
-                id,
-            }),
+    /// The ids, if only one choice is most alike.
+    pub fn only(&self) -> Option<&[u64]> {
+        match &self.choices[..] {
+            [ids] => Some(ids),
             _ => None,
         }
     }
 
-    /// Its title, or the numbers of several: "2000040, 2000041 and 3 more".
+    /// The title of one part, or the numbers of several: "2000040, 2000041 + 2000042 and 3 more".
     pub fn title(&self, document: &Document) -> String {
-        if let Some(part) = self.single() {
-            return document.part_title(part);
+        if let Some(&[id]) = self.only() {
+            let role = Role::Crash;
+            return document.part_title(PartRef { role, id });
         }
-        let named: Vec<String> = self.ids.iter().take(N_NAMED).map(u64::to_string).collect();
+        let named = self.choices.iter().take(N_NAMED);
+        let named: Vec<String> = named.map(|ids| together(ids)).collect();
         let named = named.join(", ");
-        match self.ids.len() - self.ids.len().min(N_NAMED) {
+        match self.choices.len().saturating_sub(N_NAMED) {
             0 => named,
             more => format!("{named} and {more} more"),
         }
     }
 }
 
+/// Parts that are matched as one: "2000041 + 2000042".
+pub(in crate::app) fn together(ids: &[u64]) -> String {
+    let ids: Vec<String> = ids.iter().map(u64::to_string).collect();
+    ids.join(" + ")
+}
+
 impl AppState {
-    /// The parts of the crash model of which one should be matched alone, where all of several are.
+    /// The parts of the crash model of which some should be matched alone, where all of several are.
     pub fn more_alike(&self) -> Option<&MoreAlike> {
         self.parts.more_alike.as_ref()?.current(&self.document)
     }
@@ -159,9 +164,18 @@ impl Document {
         let together = self.signature(LikeWhat::Used(Role::Crash))?;
         let found = self.likeness_to(LikeWhat::Used(Role::Stamped))?;
         let used = found.order.iter().filter(|id| both.crash.is_used(**id));
-        let of_used = used.filter_map(|id| Some((*id, *found.of_part.get(id)?)));
-        let ids = more_alike(of_used, stamped.likeness(&together));
-        (!ids.is_empty()).then_some(MoreAlike { ids, n_used })
+        let of_used = used.filter_map(|id| Some((vec![*id], *found.of_part.get(id)?)));
+        let facts = &both.crash.facts;
+        let thickness = |id| {
+            let row = facts.parts.iter().find(|row| row.id == id)?;
+            both.crash.loaded.lengthened(row.thickness)
+        };
+        let joined = joined_signatures(&facts.joined, &facts.moments, thickness);
+        let of_joined = joined
+            .into_iter()
+            .map(|(ids, own)| (ids, stamped.likeness(&own)));
+        let choices = more_alike(of_used.chain(of_joined), stamped.likeness(&together));
+        (!choices.is_empty()).then_some(MoreAlike { choices, n_used })
     }
 
     /// Title of a part of a deck with its number, or the number alone.

@@ -41,8 +41,7 @@ impl ProjectState {
             // The dialog has asked about the file that is there.
             ProjectCommand::Write(path) => write(work, path, None),
             ProjectCommand::Written(path, saved_at, document) => {
-                self.opened_at = Some(saved_at);
-                self.written(work, path, *document)
+                self.written(work, (path, saved_at), *document)
             }
             ProjectCommand::NotWritten => {
                 self.quits_when_saved = false;
@@ -97,7 +96,12 @@ impl ProjectState {
         vec![Effect::AskSaveProject(suggested)]
     }
 
-    fn written(&mut self, work: &mut Work<'_>, path: PathBuf, document: Document) -> Vec<Effect> {
+    fn written(
+        &mut self,
+        work: &mut Work<'_>,
+        (path, saved_at): (PathBuf, u64),
+        document: Document,
+    ) -> Vec<Effect> {
         let text = format!("project saved: {}", path.display());
         work.log_at(NoticeLevel::Success, LogStep::Project, None, text, None);
         work.log.notices.withdraw(Action::SaveProjectAs);
@@ -106,6 +110,7 @@ impl ProjectState {
         let now = work.unix_now();
         work.settings.remember_path(&path, now);
         self.file = Some((path, project));
+        self.opened_at = Some(saved_at);
         if std::mem::take(&mut self.quits_when_saved) {
             work.follow(FollowUp::Quit);
         }

@@ -143,16 +143,18 @@ impl LocalSearch<'_> {
 
     /// What the nodes say that lie far apart.
     fn among_far(&self) -> Vec<Difference> {
-        if self.evidence.far.iter().any(|nodes| nodes.len() > MOST_FAR) {
+        let far = &self.evidence.far;
+        if far.iter().any(|far| far.nodes.len() > MOST_FAR) {
             return Vec::new();
         }
-        let nodes = self.evidence.of_far();
-        let [of_source, of_target] = nodes.each_ref().map(|nodes| {
+        let met = self.evidence.of_far();
+        let [of_source, of_target] = [0, 1].map(|side| {
+            let per_node = far[side].per_node as f64;
             let apart = |contact| {
                 let left = self.fit.left_at(contact, &self.evidence.contacts);
-                self.apart(contact, (left, true), 1.0)
+                self.apart(contact, (left, true), per_node)
             };
-            nodes.iter().filter_map(apart).collect::<Vec<Apart>>()
+            met[side].iter().filter_map(apart).collect::<Vec<Apart>>()
         });
         let [edge_of_source, edge_of_target] = self.edges();
         let seen = |places: &[Apart]| places.iter().map(|p| (p.contact.point, p.left)).collect();

@@ -120,9 +120,12 @@ fn an_offset_of_a_section_with_walls_is_told_apart() {
 /// A sheet of 1,000 by 500 mm with shallow waves, cut off at both ends and both sides by `cut` and stretched
 /// along x.
 fn panel(n: usize, cut: [f64; 2], factor: f64) -> Surface {
-    sheet(n, cut, factor, |x, y| {
-        30.0 * (x / 160.0 + 0.4).sin() + 15.0 * ((x + 2.0 * y) / 130.0).cos()
-    })
+    sheet(n, cut, factor, waves)
+}
+
+/// Height of shallow waves.
+fn waves(x: f64, y: f64) -> f64 {
+    30.0 * (x / 160.0 + 0.4).sin() + 15.0 * ((x + 2.0 * y) / 130.0).cos()
 }
 
 fn sheet(
@@ -300,8 +303,7 @@ fn what_lies_beyond_the_borders_overhangs_and_what_lies_elsewhere_does_not() {
     let piece = |from: f64, lifted: f64| {
         grid([60, 40], |i, j| {
             let (x, y) = (from + 12.5 * i as f64, 12.5 * j as f64 - 250.0);
-            let waves = 30.0 * (x / 160.0 + 0.4).sin() + 15.0 * ((x + 2.0 * y) / 130.0).cos();
-            Point3::new(x, y, waves + if x < 0.0 { lifted } else { 0.0 })
+            Point3::new(x, y, waves(x, y) + if x < 0.0 { lifted } else { 0.0 })
         })
     };
     let [left, right] = [-500.0, -250.0].map(|from| piece(from, 0.0));

@@ -201,6 +201,7 @@ fn give_thickness_to_parts(assembly: &mut Assembly, model: &mut Model) {
     model.materials = std::mem::take(&mut assembly.materials);
     model.shell_control = assembly.shell_control;
     model.stamped_includes = std::mem::take(&mut assembly.stamped_includes);
+    model.transformations = assembly.transformations.keys().copied().collect();
 }
 
 /// With the line of the first element that names the part.

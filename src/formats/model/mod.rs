@@ -383,6 +383,8 @@ pub struct Model {
     pub motions: Vec<AppliedMotion>,
     /// Files that the solver maps onto parts of the deck.
     pub stamped_includes: Vec<StampedInclude>,
+    /// Ids of the `*DEFINE_TRANSFORMATION`s, ascending.
+    pub transformations: Vec<u64>,
     /// What could not be understood.
     pub diagnostics: Diagnostics,
     /// The files that were read, the one asked for first.

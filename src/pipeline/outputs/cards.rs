@@ -65,12 +65,12 @@ pub fn cards(
         receiver: receiver(crash)?,
         search_radius: coverage.limit,
         mapped_percent: (100.0 * coverage.target_on_source.overlap - 1.0).max(0.0),
+        transformation_id: shared_ids::free_transformation(parts),
         bounds: stamped.mesh.aabb(),
         offsets,
         deck_layout: crash.model.layout,
         stamped_layout: stamped.model.layout,
         comments,
-        ..CardOptions::default()
     };
     Ok(write_cards(form, &run.crash_from_stamped, &options)?)
 }

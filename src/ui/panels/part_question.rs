@@ -33,10 +33,13 @@ pub fn part_question_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comman
         );
         ui.add(Label::new(text).wrap());
         ui.horizontal_wrapped(|ui| {
-            if let Some(part) = more.single()
-                && ui.button("Match only this").clicked()
-            {
-                commands.push(PartCommand::UseOnly(part).into());
+            let label = match more.only() {
+                Some([_]) => Some("Match only this"),
+                Some(_) => Some("Match only these"),
+                None => None,
+            };
+            if label.is_some_and(|label| ui.button(label).clicked()) {
+                commands.push(PartCommand::UseMostAlike.into());
             }
             if ui.button("Use all").clicked() {
                 commands.push(PartCommand::UseAll(Role::Crash).into());

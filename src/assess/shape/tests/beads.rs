@@ -4,15 +4,13 @@ use super::*;
 
 #[test]
 fn a_bead_that_one_part_lacks_is_told_with_its_place() {
-    let height =
-        |x: f64, y: f64| 30.0 * (x / 160.0 + 0.4).sin() + 15.0 * ((x + 2.0 * y) / 130.0).cos();
     let bead = |x: f64, y: f64| {
         let from_middle = ((x - 100.0) / 60.0).hypot((y - 50.0) / 25.0);
         4.0 * (1.0 - from_middle * from_middle).max(0.0)
     };
-    let plain = sheet(80, [0.0, 0.0], 1.0, height);
+    let plain = sheet(80, [0.0, 0.0], 1.0, waves);
     // It covers a hundredth of the sheet, so that it does not show at 95 % of the area.
-    let beaded = sheet(74, [0.0, 0.0], 1.0, |x, y| height(x, y) + bead(x, y));
+    let beaded = sheet(74, [0.0, 0.0], 1.0, |x, y| waves(x, y) + bead(x, y));
     for [source, target] in [[&beaded, &plain], [&plain, &beaded]] {
         let shape = statement(source, target);
         assert_eq!(shape.kind, ShapeKind::OtherVersion, "{shape:?}");
@@ -30,17 +28,15 @@ fn a_bead_that_one_part_lacks_is_told_with_its_place() {
 
 #[test]
 fn a_bead_narrower_than_the_elements_can_show_is_told_where_both_meshes_say_so() {
-    let height =
-        |x: f64, y: f64| 30.0 * (x / 160.0 + 0.4).sin() + 15.0 * ((x + 2.0 * y) / 130.0).cos();
     // 4 mm high, 16 mm wide and 200 mm long.
     let beaded = |x: f64, y: f64| {
         let across = ((y - 51.0) / 8.0).abs().min(1.0);
         let along = ((x - 40.0) / 100.0).abs();
         let end = ((1.2 - along) / 0.2).clamp(0.0, 1.0);
-        height(x, y) + 2.0 * (1.0 + (PI * across).cos()) * end
+        waves(x, y) + 2.0 * (1.0 + (PI * across).cos()) * end
     };
     let mesh = |n: usize, height: &dyn Fn(f64, f64) -> f64| sheet(n, [0.0, 0.0], 1.0, height);
-    let (coarse, fine) = (mesh(80, &height), mesh(148, &height));
+    let (coarse, fine) = (mesh(80, &waves), mesh(148, &waves));
     let (coarse_beaded, fine_beaded) = (mesh(77, &beaded), mesh(140, &beaded));
     for [source, target] in [
         [&fine_beaded, &coarse],
@@ -67,14 +63,12 @@ fn a_bead_narrower_than_the_elements_can_show_is_told_where_both_meshes_say_so()
 /// More nodes lie beneath it than places are looked at, in either mesh.
 #[test]
 fn a_small_bead_is_found_on_fine_meshes() {
-    let height =
-        |x: f64, y: f64| 30.0 * (x / 160.0 + 0.4).sin() + 15.0 * ((x + 2.0 * y) / 130.0).cos();
     // 3 mm high, 18 mm wide and 30 mm long.
     let bead = |x: f64, y: f64| {
         let from_middle = ((x - 100.0) / 15.0).hypot((y - 50.0) / 9.0);
         3.0 * (1.0 - from_middle.powi(4)).max(0.0)
     };
-    let mesh = |n: usize, by: f64| sheet(n, [0.0, 0.0], 1.0, |x, y| height(x, y) + by * bead(x, y));
+    let mesh = |n: usize, by: f64| sheet(n, [0.0, 0.0], 1.0, |x, y| waves(x, y) + by * bead(x, y));
     let (plain, beaded) = (mesh(150, 0.0), mesh(140, 1.0));
     for [source, target] in [[&beaded, &plain], [&plain, &beaded]] {
         let shape = statement(source, target);
@@ -112,11 +106,9 @@ fn a_narrow_bead_is_found_however_deep_it_is() {
 
 #[test]
 fn beads_that_run_out_at_an_outline_and_bent_flanges_are_told() {
-    let height =
-        |x: f64, y: f64| 30.0 * (x / 160.0 + 0.4).sin() + 15.0 * ((x + 2.0 * y) / 130.0).cos();
-    let plain = sheet(80, [0.0, 0.0], 1.0, height);
+    let plain = sheet(80, [0.0, 0.0], 1.0, waves);
     let told = |lift: &dyn Fn(f64, f64) -> f64| {
-        let source = sheet(74, [0.0, 0.0], 1.0, |x, y| height(x, y) + lift(x, y));
+        let source = sheet(74, [0.0, 0.0], 1.0, |x, y| waves(x, y) + lift(x, y));
         let shape = statement(&source, &plain);
         assert_ne!(shape.kind, ShapeKind::Different, "{shape:?}");
         shape.reasons.first().copied()
@@ -153,9 +145,7 @@ fn beads_that_run_out_at_an_outline_and_bent_flanges_are_told() {
 
 #[test]
 fn noise_and_a_bent_corner_are_no_beads() {
-    let height =
-        |x: f64, y: f64| 30.0 * (x / 160.0 + 0.4).sin() + 15.0 * ((x + 2.0 * y) / 130.0).cos();
-    let plain = sheet(80, [0.0, 0.0], 1.0, height);
+    let plain = sheet(80, [0.0, 0.0], 1.0, waves);
     // One place in twenty lies 1.6 to 2 mm off, each by itself.
     let rough = |x: f64, y: f64| {
         let mixed = (x * 12.9898 + y * 78.233).sin() * 43_758.547;
@@ -166,11 +156,11 @@ fn noise_and_a_bent_corner_are_no_beads() {
             0.0
         }
     };
-    let noisy = sheet(74, [0.0, 0.0], 1.0, |x, y| height(x, y) + rough(x, y));
+    let noisy = sheet(74, [0.0, 0.0], 1.0, |x, y| waves(x, y) + rough(x, y));
     assert!(statement(&noisy, &plain).reasons.is_empty());
     // The last 60 mm at a corner are bent up by 3 mm, more sharply than any springback of the whole.
     let corner =
         |x: f64, y: f64| 3.0 * (((x - 440.0) / 60.0).max(0.0) * ((y - 190.0) / 60.0).max(0.0));
-    let bent = sheet(74, [0.0, 0.0], 1.0, |x, y| height(x, y) + corner(x, y));
+    let bent = sheet(74, [0.0, 0.0], 1.0, |x, y| waves(x, y) + corner(x, y));
     assert!(statement(&bent, &plain).reasons.is_empty());
 }

@@ -88,6 +88,13 @@ impl SharedIds {
     }
 }
 
+/// The smallest id that no transformation of either file has, so that the one on the cards is no second definition.
+pub(super) fn free_transformation(parts: PerRole<&LoadedPart>) -> u64 {
+    let PerRole { crash, stamped } = parts.map(|part| &part.model.transformations);
+    let is_free = |id: &u64| !crash.contains(id) && !stamped.contains(id);
+    (1..).find(is_free).expect("files have finitely many ids")
+}
+
 fn share<T>(
     of_crash: impl IntoIterator<Item = T>,
     of_stamped: impl IntoIterator<Item = T>,

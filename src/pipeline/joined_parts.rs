@@ -4,32 +4,28 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::formats::Model;
 
-/// No part has a node yet.
-const NONE: u32 = u32::MAX;
 /// Parts that share fewer nodes share no edge.
 const LEAST_SHARED: usize = 2;
 
-/// The groups of two or more of the `chosen` parts that are joined along common nodes: all that hang together, and each
-/// two of more than two. Ids in ascending order. O(shells + groups).
-pub(super) fn joined_parts(model: &Model, chosen: &[u64]) -> BTreeSet<Vec<u64>> {
-    let chosen: BTreeSet<u64> = chosen.iter().copied().collect();
+/// The groups of two or more of the `chosen` parts, but for all of them, that are joined along common nodes: all that hang
+/// together, and each two of more than two. Ids in ascending order. O(shells + groups).
+pub fn joined_parts(model: &Model, chosen: &BTreeSet<u64>) -> BTreeSet<Vec<u64>> {
     let is_chosen = model.parts.iter().map(|part| chosen.contains(&part.id));
     let is_chosen: Vec<bool> = is_chosen.collect();
-    let mut first_at = vec![NONE; model.nodes.len()];
-    let mut n_shared: BTreeMap<(u32, u32), usize> = BTreeMap::new();
+    let mut first_at: Vec<Option<u32>> = vec![None; model.nodes.len()];
+    let mut shared: BTreeMap<(u32, u32), BTreeSet<u32>> = BTreeMap::new();
     for shell in model.shells.iter().filter(|s| is_chosen[s.part as usize]) {
-        for &node in &shell.nodes[..if shell.is_triangle() { 3 } else { 4 }] {
-            match &mut first_at[node as usize] {
-                first if *first == NONE => *first = shell.part,
-                first if *first == shell.part => {}
-                first => {
-                    let pair = (shell.part.min(*first), shell.part.max(*first));
-                    *n_shared.entry(pair).or_default() += 1;
-                }
+        for node in shell.nodes {
+            let first = *first_at[node as usize].get_or_insert(shell.part);
+            if first != shell.part {
+                let pair = (first.min(shell.part), first.max(shell.part));
+                shared.entry(pair).or_default().insert(node);
             }
         }
     }
-    let joined = n_shared.into_iter().filter(|(_, n)| *n >= LEAST_SHARED);
+    let joined = shared
+        .into_iter()
+        .filter(|(_, nodes)| nodes.len() >= LEAST_SHARED);
     let pairs: Vec<(u32, u32)> = joined.map(|(pair, _)| pair).collect();
     let mut groups = hanging_together(&pairs);
     groups.extend(pairs.iter().map(|&(a, b)| BTreeSet::from([a, b])));
@@ -38,7 +34,8 @@ pub(super) fn joined_parts(model: &Model, chosen: &[u64]) -> BTreeSet<Vec<u64>> 
         ids.sort_unstable();
         ids
     };
-    groups.into_iter().map(ids).collect()
+    let groups = groups.into_iter().map(ids);
+    groups.filter(|ids| ids.len() < chosen.len()).collect()
 }
 
 /// What hangs together by pairs.
@@ -102,12 +99,23 @@ mod tests {
     #[test]
     fn parts_that_share_an_edge_are_joined() {
         let model = row(&[30, 10, 20, 40, 50], &[2]);
-        let all = [10, 20, 30, 40, 50];
-        let groups: Vec<Vec<u64>> = joined_parts(&model, &all).into_iter().collect();
+        let joined = |model: &Model, chosen: &[u64]| -> Vec<Vec<u64>> {
+            let chosen = chosen.iter().copied().collect();
+            joined_parts(model, &chosen).into_iter().collect()
+        };
+        let groups = joined(&model, &[10, 20, 30, 40, 50]);
         let expected = [vec![10, 20], vec![10, 20, 30], vec![10, 30], vec![40, 50]];
         assert_eq!(groups, expected);
+        // Parts that meet at one node share no edge.
+        let mut at_a_corner = row(&[1, 2, 3], &[0, 1]);
+        at_a_corner.shells[1].nodes[0] = 3;
+        assert!(joined(&at_a_corner, &[1, 2, 3]).is_empty());
+        at_a_corner.shells[1].nodes[3] = 2;
+        assert_eq!(joined(&at_a_corner, &[1, 2, 3]), [[1, 2]]);
+        // All that are chosen are no group among them.
+        assert!(joined(&at_a_corner, &[1, 2]).is_empty());
         // What is not chosen joins nothing.
-        let without = joined_parts(&model, &[20, 30, 40]);
+        let without = joined(&model, &[20, 30, 40]);
         assert!(without.is_empty(), "{without:?}");
     }
 }
