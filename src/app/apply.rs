@@ -184,7 +184,7 @@ impl AppState {
 
     /// Leaves at once, or asks first if something would be lost.
     fn quit(&mut self) -> Vec<Effect> {
-        if self.unfinished_work().is_some() {
+        if self.would_lose_work() {
             self.view.dialog = Some(Dialog::Unsaved);
             return Vec::new();
         }

@@ -20,6 +20,16 @@ impl JobBoard {
             Some(_) => Err(Reason("A match is running.")),
         }
     }
+
+    /// `Ok` unless a part is being read or taken otherwise from its deck: another one takes its place soon.
+    pub fn are_parts_read(&self) -> Result<(), Reason> {
+        let of_role = |role| [JobKey::Load(role), JobKey::Reselect(role)];
+        let mut keys = (Role::ALL.into_iter().flat_map(of_role)).chain([JobKey::OpenProject]);
+        if keys.any(|key| self.is_active(key)) {
+            return Err(Reason("A part is still being read."));
+        }
+        Ok(())
+    }
 }
 
 impl Document {
@@ -77,6 +87,7 @@ impl Document {
     /// `Ok` if a match may start while these jobs run.
     pub fn can_match(&self, jobs: &JobBoard) -> Result<(), Reason> {
         self.has_both_parts()?;
+        jobs.are_parts_read()?;
         jobs.is_unlocked()
     }
 }

@@ -80,26 +80,36 @@ impl PaletteEntry {
         if self.reason.is_some() {
             return Vec::new();
         }
-        let mut settings = remembered(&state.settings, &self.label);
-        if let Does::Theme(theme) = self.does {
-            settings.theme = theme;
+        let command = match &self.does {
+            Does::Theme(theme) => {
+                let mut settings = state.settings.clone();
+                settings.theme = *theme;
+                Some(Command::Settings(Box::new(settings)))
+            }
+            Does::Action(action) => action.command(state),
+            Does::Command(command) => Some(Command::clone(command)),
+        };
+        match command {
+            // Settings are set as a whole.
+            Some(Command::Settings(mut settings)) => {
+                remember(&mut settings, &self.label);
+                vec![Command::Settings(settings)]
+            }
+            command => {
+                let mut settings = state.settings.clone();
+                remember(&mut settings, &self.label);
+                let remembered = Command::Settings(Box::new(settings));
+                std::iter::once(remembered).chain(command).collect()
+            }
         }
-        let mut commands = vec![Command::Settings(Box::new(settings))];
-        match &self.does {
-            Does::Theme(_) => {}
-            Does::Action(action) => commands.extend(action.command(state)),
-            Does::Command(command) => commands.push(Command::clone(command)),
-        }
-        commands
     }
 }
 
-fn remembered(settings: &Settings, label: &str) -> Settings {
-    let mut settings = settings.clone();
-    settings.recent_commands.retain(|known| known != label);
-    settings.recent_commands.insert(0, label.to_owned());
-    settings.recent_commands.truncate(MAX_RECENT);
-    settings
+fn remember(settings: &mut Settings, label: &str) {
+    let recent = &mut settings.recent_commands;
+    recent.retain(|known| known != label);
+    recent.insert(0, label.to_owned());
+    recent.truncate(MAX_RECENT);
 }
 
 impl AppState {

@@ -5,6 +5,7 @@ mod left_open;
 mod unknowns;
 
 use nalgebra::{SMatrix, SVector};
+use rayon::prelude::*;
 
 use super::borders::PairKind;
 use super::contact::{Contact, Contacts};
@@ -18,8 +19,12 @@ use bends::N_BENDS;
 pub(super) use unknowns::{N_SMOOTH, Row};
 use unknowns::{bends_of, joined};
 
-/// Times that places far off the fit are given less weight.
+/// Places whose equations are added by themselves, so that any number of threads adds them in one order.
+const CHUNK: usize = 1024;
+/// Times at most that places far off the fit are given less weight.
 const ROUNDS: usize = 4;
+/// It was the last time if no unknown changes by more than this share of what facets leave.
+const STILL: f64 = 1e-3;
 /// Share of an offset that nothing else can imitate; with less it is not separable.
 pub(super) const LEAST_OWN: f64 = 0.02;
 
@@ -159,52 +164,39 @@ impl Fit {
         let row = |point: &Point3, direction: &Vector3, offset: f64| {
             explaining(contacts, &bends, point, direction, offset)
         };
-        let places = contacts.list.iter();
-        let places: Vec<Row> = places.map(|c| row(&c.point, &c.normal, 1.0)).collect();
-        let beside = borders.pairs().iter();
-        let beside: Vec<Row> = beside.map(|p| row(&p.point, &p.across, 0.0)).collect();
-        let areas: Vec<f64> = contacts.list.iter().map(|c| c.weight).collect();
-        let mut left: Vec<f64> = contacts.list.iter().map(|c| c.gap).collect();
-        let mut found = Row::zeros();
-        let mut is_separable = false;
-        let mut equations = NormalEquations::<N_SMOOTH>::default();
-        for round in 0..2 * ROUNDS {
-            let has_offset = round < ROUNDS;
-            if round == ROUNDS {
-                if found[Unknown::OFFSET].abs() <= evidence.most_offset {
-                    break;
-                }
-                // No offset of a sheet: one that bends undo.
-                left = contacts.list.iter().map(|c| c.gap).collect();
-            }
-            let weights = robust_weights(&left, &areas, evidence.noise);
-            equations = NormalEquations::default();
-            for ((row, contact), weight) in places.iter().zip(&contacts.list).zip(weights) {
-                equations.add(row, contact.gap, weight);
-            }
-            for ((row, pair), weight) in beside.iter().zip(borders.pairs()).zip(border_weights) {
-                equations.add(row, pair.gap, *weight);
-            }
-            is_separable = equations.imitated(Unknown::OFFSET).own_share > LEAST_OWN;
-            if !is_separable || !has_offset {
-                // The shift of the rigid motion takes it.
-                equations.leave_out(Unknown::OFFSET..Unknown::OFFSET + 1);
-            }
-            found = equations.solved();
-            for ((left, row), contact) in left.iter_mut().zip(&places).zip(&contacts.list) {
-                *left = contact.gap - row.dot(&found);
-            }
+        let rows = Rows {
+            places: (contacts.list.par_iter())
+                .map(|c| row(&c.point, &c.normal, 1.0))
+                .collect(),
+            gaps: contacts.list.iter().map(|c| c.gap).collect(),
+            areas: contacts.list.iter().map(|c| c.weight).collect(),
+            beside: (borders.pairs().iter())
+                .map(|p| row(&p.point, &p.across, 0.0))
+                .collect(),
+            gaps_beside: borders.pairs().iter().map(|p| p.gap).collect(),
+            border_weights,
+            noise: evidence.noise,
+        };
+        let mut solution = rows.solved(true);
+        if solution.found[Unknown::OFFSET].abs() > evidence.most_offset {
+            // No offset of a sheet: one that bends undo.
+            solution = rows.solved(false);
         }
+        let Solution {
+            found,
+            mut left,
+            equations,
+            is_separable,
+        } = solution;
         let offset = found[Unknown::OFFSET];
-        let smooth = places.iter().map(|row| row.dot(&found) - offset);
+        let smooth = rows.places.iter().map(|row| row.dot(&found) - offset);
         for (left, contact) in left.iter_mut().zip(&contacts.list) {
             *left = beyond_facets(*left, contact);
         }
-        let beside = beside.iter().zip(borders.pairs());
-        let beside: Vec<f64> = beside.map(|(row, p)| p.gap - row.dot(&found)).collect();
-        let as_they_are: Vec<f64> = borders.pairs().iter().map(|p| p.gap).collect();
+        let beside = remaining(&rows.beside, &rows.gaps_beside, &found);
         // What throws most borders apart explains none of them.
-        let explains = borders.distance_of_most(&beside) <= borders.distance_of_most(&as_they_are);
+        let as_they_are = &rows.gaps_beside;
+        let explains = borders.distance_of_most(&beside) <= borders.distance_of_most(as_they_are);
         let holes = borders.all_holes().map(|pair| {
             let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
             let explained = axes.map(|axis| row(&pair.hole.center, &axis, 0.0).dot(&found));
@@ -216,7 +208,7 @@ impl Fit {
         });
         Self {
             smooth: smooth.collect(),
-            borders: if explains { beside } else { as_they_are },
+            borders: if explains { beside } else { rows.gaps_beside },
             holes: holes.collect(),
             rigid: motion_of(&found) + bends.rigid_parts(contacts) * bends_of(&found),
             left,
@@ -227,6 +219,75 @@ impl Fit {
             found,
         }
     }
+}
+
+/// What is fitted: places of the surfaces, and pairs of borders.
+struct Rows<'a> {
+    places: Vec<Row>,
+    gaps: Vec<f64>,
+    areas: Vec<f64>,
+    beside: Vec<Row>,
+    gaps_beside: Vec<f64>,
+    border_weights: &'a [f64],
+    noise: f64,
+}
+
+/// The unknowns, and what they leave of the gaps.
+struct Solution {
+    found: Row,
+    left: Vec<f64>,
+    /// Those of the last round.
+    equations: NormalEquations<N_SMOOTH>,
+    is_separable: bool,
+}
+
+impl Rows<'_> {
+    /// Robust least squares; without an offset, or where it is not separable, the shift of the rigid motion takes it.
+    fn solved(&self, has_offset: bool) -> Solution {
+        let mut solution = Solution {
+            found: Row::zeros(),
+            left: self.gaps.clone(),
+            equations: NormalEquations::default(),
+            is_separable: false,
+        };
+        for _ in 0..ROUNDS {
+            let weights = robust_weights(&solution.left, &self.areas, self.noise);
+            let mut equations = self.equations(&weights);
+            solution.is_separable = equations.imitated(Unknown::OFFSET).own_share > LEAST_OWN;
+            if !solution.is_separable || !has_offset {
+                equations.leave_out(Unknown::OFFSET..Unknown::OFFSET + 1);
+            }
+            let found = equations.solved();
+            let by = (found - solution.found).amax();
+            solution.left = remaining(&self.places, &self.gaps, &found);
+            (solution.found, solution.equations) = (found, equations);
+            if by <= STILL * self.noise {
+                break;
+            }
+        }
+        solution
+    }
+
+    /// O(places).
+    fn equations(&self, weights: &[f64]) -> NormalEquations<N_SMOOTH> {
+        let of_places = (self.places.par_chunks(CHUNK))
+            .zip(self.gaps.par_chunks(CHUNK))
+            .zip(weights.par_chunks(CHUNK));
+        let of_places: Vec<NormalEquations<N_SMOOTH>> = of_places
+            .map(|((rows, gaps), weights)| NormalEquations::of(rows, gaps, weights))
+            .collect();
+        let mut all = NormalEquations::of(&self.beside, &self.gaps_beside, self.border_weights);
+        for part in &of_places {
+            all += part;
+        }
+        all
+    }
+}
+
+/// What unknowns leave of distances.
+fn remaining(rows: &[Row], distances: &[f64], unknowns: &Row) -> Vec<f64> {
+    let pairs = rows.iter().zip(distances);
+    pairs.map(|(row, gap)| gap - row.dot(unknowns)).collect()
 }
 
 /// What the facets of the other part leave of a distance.

@@ -26,11 +26,12 @@ use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
 use crate::pipeline::load::{LoadSettings, LoadedPart, load};
 use crate::pipeline::map::{
-    DefaultThickness, MapFiles, MapOutput, MapRecipe, MapRecord, MapRun, OtherResult, PlacedPart,
-    PoseOrigin, check_shells, deck_comments, element_table, elements_path, map_parts, map_record,
-    map_report, unmapped_sets, unread_line, write_mapping,
+    DefaultThickness, MapFile, MapFiles, MapOutput, MapRecipe, MapRecord, MapRun, OtherResult,
+    PlacedPart, PoseOrigin, check_shells, deck_comments, element_table, elements_path, map_parts,
+    map_record, map_report, unmapped_sets, unread_line, write_mapping,
 };
 use crate::pipeline::outputs::{Content, Target};
+use crate::pipeline::write_file::write_files_unless_cancelled;
 use crate::registration::Hand;
 use crate::role::Role;
 use crate::text::{compared_percents, counted};
@@ -321,6 +322,17 @@ fn is_short(outputs: &MapOutputArgs, record: &MapRecord) -> bool {
         .is_some_and(|required| record.mapped_area < required / 100.0)
 }
 
+/// Files of a mapping, which belong together.
+fn write_together(files: &[MapFile]) -> anyhow::Result<()> {
+    if let [file] = files {
+        return write_output(&file.path, &file.bytes);
+    }
+    let files: Vec<(&Path, &[u8])> = (files.iter())
+        .map(|file| (&*file.path, &*file.bytes))
+        .collect();
+    Ok(write_files_unless_cancelled(&files, &Monitor::silent())?)
+}
+
 /// Writes the files, prints the summary, and says how it went.
 fn finish(
     outputs: &MapOutputArgs,
@@ -329,15 +341,18 @@ fn finish(
     tables: &[(PathBuf, Vec<u8>)],
 ) -> anyhow::Result<ExitCode> {
     let mut failed: Vec<PathBuf> = Vec::new();
+    if let Some(files) = files.map(|files| &files.files)
+        && let Err(error) = write_together(files)
+    {
+        log::error!("{} is not written: {error:#}", files[0].path.display());
+        failed.extend(files.iter().map(|file| file.path.clone()));
+    }
     let mut note = |path: &Path, written: anyhow::Result<()>| {
         if let Err(error) = written {
             log::error!("{} is not written: {error:#}", path.display());
             failed.push(path.to_path_buf());
         }
     };
-    for file in files.iter().flat_map(|files| &files.files) {
-        note(&file.path, write_output(&file.path, &file.bytes));
-    }
     for (path, bytes) in tables {
         note(path, write_output(path, bytes));
     }

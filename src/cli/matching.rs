@@ -179,7 +179,7 @@ fn write(
     let silent = Monitor::silent();
     let notes = if is_stdout(path) {
         let made = output.make(input, None, &silent)?;
-        print_exactly(std::str::from_utf8(&made.bytes)?)?;
+        print_exactly(&made.bytes)?;
         made.notes
     } else {
         output.write(input, path, &silent)?

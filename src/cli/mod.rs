@@ -112,7 +112,7 @@ fn write_json(path: &Path, value: &impl Serialize) -> anyhow::Result<()> {
 /// Writes to a file, or to standard output if the path is `-`.
 fn write_output(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     if is_stdout(path) {
-        return print_exactly(std::str::from_utf8(bytes).context("the output is not text")?);
+        return print_exactly(bytes);
     }
     Ok(write_file(path, bytes)?)
 }
@@ -161,14 +161,14 @@ fn is_stdout(path: &Path) -> bool {
 /// Prints text for people to standard output; control characters that a file smuggled in are
 /// shown, not sent to the terminal.
 fn print(text: &str) -> anyhow::Result<()> {
-    print_exactly(&printable(text))
+    print_exactly(printable(text).as_bytes())
 }
 
 /// Prints to standard output. A reader that has gone away is no error.
-fn print_exactly(text: &str) -> anyhow::Result<()> {
+fn print_exactly(bytes: &[u8]) -> anyhow::Result<()> {
     let mut out = io::stdout().lock();
     // What stays in the buffer would be lost without a word.
-    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    let written = out.write_all(bytes).and_then(|()| out.flush());
     match written {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         other => other.context("standard output cannot be written"),

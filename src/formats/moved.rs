@@ -1,13 +1,14 @@
 //! A model at another pose: nodes moved, tensors turned, corners renumbered under a mirror.
 
+use std::collections::HashSet;
 use std::ops::Range;
 
 use super::model::{Forming, Model, Part, ShellExtra, Solid};
+use crate::geometry::Similarity;
 use crate::geometry::tensor::rotated;
-use crate::geometry::{Matrix3, Similarity};
 
 /// The model under `motion`: nodes moved, stress and strain tensors turned with them (they are in
-/// the global frame), thicknesses scaled. Ids stay. Nodes whose id is repeated are moved like all
+/// the global frame, but for stresses in element axes, which turn with the elements), thicknesses scaled. Ids stay. Nodes whose id is repeated are moved like all
 /// others. History variables are kept as they are; the tensors among them that the file names as such
 /// (`NTENSR`) are turned. Density and modulus of materials are not known in a scaled model. O(model).
 ///
@@ -39,20 +40,32 @@ pub fn moved(model: &Model, motion: &Similarity) -> Model {
             (material.density, material.modulus) = (0.0, 0.0);
         }
     }
-    turn(&mut result.forming, &motion.rotation);
+    turn(&mut result, motion);
     if motion.is_mirrored() {
         reverse(&mut result);
     }
     result
 }
 
-fn turn(forming: &mut Forming, rotation: &Matrix3) {
+fn turn(model: &mut Model, motion: &Similarity) {
+    let in_element_axes = shells_in_element_axes(model);
+    let (forming, rotation) = (&mut model.forming, &motion.rotation);
     for index in 0..forming.n_stress() {
+        let is_turned = !in_element_axes.contains(&forming.stress(index).element_id);
+        let turned = |tensor: &[f64; 6]| {
+            if is_turned {
+                rotated(tensor, rotation)
+            } else if motion.is_mirrored() {
+                along_other_way(tensor)
+            } else {
+                *tensor
+            }
+        };
         for point in forming.stress_points_mut(index) {
-            point.stress = rotated(&point.stress, rotation);
+            point.stress = turned(&point.stress);
         }
         for tensor in forming.tensors_mut(index) {
-            *tensor = rotated(tensor, rotation);
+            *tensor = turned(tensor);
         }
     }
     for index in 0..forming.n_strain() {
@@ -60,6 +73,22 @@ fn turn(forming: &mut Forming, rotation: &Matrix3) {
             point.strain = rotated(&point.strain, rotation);
         }
     }
+}
+
+/// The shells whose stresses are read in element axes.
+fn shells_in_element_axes(model: &Model) -> HashSet<u64> {
+    let is_meant: Vec<bool> = (model.parts.iter())
+        .map(|part| model.is_in_element_axes(part.id))
+        .collect();
+    let shells = model.shells.iter();
+    let meant = shells.filter(|shell| is_meant[shell.part as usize]);
+    meant.map(|shell| shell.id).collect()
+}
+
+/// A tensor in element axes once the mirrored element has the order 2 1 4 3: its first axis, along the first edge,
+/// points the other way, the normal and the axis between both do not.
+fn along_other_way([xx, yy, zz, xy, yz, zx]: &[f64; 6]) -> [f64; 6] {
+    [*xx, *yy, *zz, -xy, *yz, -zx]
 }
 
 /// Reverses the order of corners and all that goes with them.

@@ -137,7 +137,7 @@ fn header(bytes: &[u8]) -> Result<Header, Stop> {
     let broken = |n: usize, what: &str| Stop::Broken(format!("line {n} of the header {what}"));
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
-    let (mut at, mut n) = (0, 0);
+    let (mut at, mut n, mut n_elements) = (0, 0, 0_usize);
     loop {
         let length = memchr::memchr2(b'\n', b'\r', &bytes[at..]);
         let length = length.ok_or_else(|| Stop::Broken("its header has no end_header".into()))?;
@@ -159,10 +159,11 @@ fn header(bytes: &[u8]) -> Result<Header, Stop> {
                 });
             }
             ["element", name, count] => {
-                let count = count.parse();
+                let count = count.parse::<usize>();
                 let count = count.map_err(|_| broken(n, "has a count that is not a number"))?;
-                // Every element takes bytes, so a count beyond the file's length is a lie.
-                if count > bytes.len() {
+                // Every element takes bytes, so counts beyond the file's length are a lie.
+                n_elements = n_elements.saturating_add(count);
+                if n_elements > bytes.len() {
                     return Err(Stop::Broken(format!(
                         "its header promises {count} elements {name:?}"
                     )));
@@ -389,8 +390,9 @@ impl Reader<'_> {
                 self.monitor.check()?;
             }
             for property in &element.properties {
-                let is_corners = CORNERS.contains(&property.name.as_str());
-                let read = if is_corners && property.count.is_some() {
+                let is_named = CORNERS.contains(&property.name.as_str());
+                let is_corners = is_named && property.count.is_some();
+                let read = if is_corners {
                     read_list(property, values, &mut list)
                 } else {
                     pass_over(property, values)

@@ -1,5 +1,6 @@
 //! What STL, OBJ and PLY have in common: points and polygons that become a model.
 
+use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -16,10 +17,14 @@ const MAX_POINTS: usize = u32::MAX as usize - 1;
 pub(super) struct Polygons {
     positions: Vec<Point3>,
     shells: Vec<Shell>,
+    /// Polygons so far, those that were left out as well.
+    n_polygons: usize,
     parts: Vec<Part>,
     /// Index of the part that polygons belong to; `None` until its first polygon makes it.
     current: Option<u32>,
     title: String,
+    /// The last part of each title.
+    last_of_title: HashMap<String, u32>,
     diagnostics: Diagnostics,
     file: Arc<Path>,
 }
@@ -29,9 +34,11 @@ impl Polygons {
         Self {
             positions: Vec::new(),
             shells: Vec::new(),
+            n_polygons: 0,
             parts: Vec::new(),
             current: None,
             title: String::new(),
+            last_of_title: HashMap::new(),
             diagnostics: Diagnostics::default(),
             file: Arc::from(file),
         }
@@ -54,8 +61,7 @@ impl Polygons {
     /// Goes on with the last part of this title, or begins it.
     pub(super) fn resume_part(&mut self, title: &[u8]) {
         self.begin_part(title);
-        let found = self.parts.iter().rposition(|part| part.title == self.title);
-        self.current = found.map(|index| index as u32);
+        self.current = self.last_of_title.get(&self.title).copied();
     }
 
     fn part(&mut self) -> u32 {
@@ -66,7 +72,9 @@ impl Polygons {
                 is_defined: true,
                 ..Part::default()
             });
-            self.parts.len() as u32 - 1
+            let last = self.parts.len() as u32 - 1;
+            self.last_of_title.insert(self.title.clone(), last);
+            last
         })
     }
 
@@ -100,10 +108,8 @@ impl Polygons {
             let point = self.positions.get(corner as usize);
             point.is_some_and(is_place)
         };
-        let which = match self.shells.len() {
-            0 => "a polygon before element 1".to_owned(),
-            n => format!("the polygon after element {n}"),
-        };
+        self.n_polygons += 1;
+        let which = format!("polygon {}", self.n_polygons);
         if corners.len() < 3 {
             self.warn(line, || format!("{which} has fewer than three corners"));
             return;

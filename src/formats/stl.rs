@@ -140,19 +140,24 @@ impl<'a> Words<'a> {
 
     /// The rest of the line, up to a word that begins something else in a file of one line.
     fn name(&mut self) -> &'a [u8] {
-        let end = memchr::memchr(b'\n', self.rest).unwrap_or(self.rest.len());
-        let line = &self.rest[..end];
-        let mut ahead = Words::new(line);
-        let mut before = 0;
-        while let Some(word) = ahead.next() {
-            if [&b"facet"[..], b"solid", b"endsolid"].contains(&&word.to_ascii_lowercase()[..]) {
-                self.rest = &self.rest[before..];
-                return line[..before].trim_ascii();
+        let all = self.rest;
+        let (mut at, mut end) = (0, 0);
+        // A file of one line has many names, so none is looked for beyond its end.
+        loop {
+            let is_blank = |b: &u8| b.is_ascii_whitespace() && *b != b'\n';
+            let ahead = all[at..].iter().position(|b| !is_blank(b));
+            at = ahead.map_or(all.len(), |n| at + n);
+            let rest = &all[at..];
+            let n = rest.iter().position(u8::is_ascii_whitespace);
+            let word = &rest[..n.unwrap_or(rest.len())];
+            let begins_other = [&b"facet"[..], b"solid", b"endsolid"];
+            if word.is_empty() || begins_other.contains(&&word.to_ascii_lowercase()[..]) {
+                self.rest = &all[end..];
+                return all[..end].trim_ascii();
             }
-            before = line.len() - ahead.rest.len();
+            at += word.len();
+            end = at;
         }
-        self.rest = &self.rest[end..];
-        line.trim_ascii()
     }
 }
 

@@ -67,7 +67,10 @@ impl PartFacts {
     /// Counts and measures. O(elements).
     pub fn of(part: &LoadedPart, monitor: &Monitor) -> Result<Self, Cancelled> {
         let (model, measures) = (&part.model, part.surface.measures());
-        let parts = model.part_summaries();
+        let mut parts = model.part_summaries();
+        for row in &mut parts {
+            row.thickness = part.lengthened(row.thickness);
+        }
         monitor.check()?;
         let part_bounds = part_bounds(part);
         monitor.check()?;

@@ -7,7 +7,8 @@ use crate::geometry::chunks::{CHUNK, for_chunks, map_chunks};
 use crate::monitor::{Cancelled, Monitor};
 
 /// Fills as many rings as the options ask for. A filled element gets the area-weighted means of its
-/// mapped neighbours of the same part and the same number of layers, and the status [`Status::Filled`]. Where
+/// mapped neighbours of the same part and the same layers, and the status [`Status::Filled`]; a neighbour whose normal
+/// points to the other side of the sheet gives its layers from the other end. Where
 /// plastic strains are asked for, these come with zero stress; there is no strain and no history. Elements
 /// beside which neither thickness nor plastic strain is known stay as they are.
 pub(super) fn fill(
@@ -48,10 +49,12 @@ pub(super) fn fill(
                     .iter()
                     .map(|&n| n as usize)
                     .filter(|&n| {
+                        let rule = &target.rules[usize::from(target.rule_of[n])];
                         gives(n)
                             && target.mesh.parts()[n] == target.mesh.parts()[element]
                             && target.rule_of[n] == target.rule_of[element]
                             && target.planes(n) == target.planes(element)
+                            && (!neighbours.are_opposed(n, element) || rule.is_symmetric())
                     });
                 let around: Vec<usize> = around.collect();
                 if !around.is_empty() {
@@ -77,7 +80,8 @@ pub(super) fn fill(
                 mapped.thickness[element] = sum / known.iter().map(area).sum::<f64>();
             }
             if let Some(states) = &mut states {
-                states[element] = mean_plastic_strain(states, &around, target);
+                let is_opposed = |n| neighbours.are_opposed(n, element);
+                states[element] = mean_plastic_strain(states, &around, is_opposed, target);
             }
             mapped.elements[element].status = Status::Filled;
         }
@@ -93,6 +97,7 @@ pub(super) fn fill(
 fn mean_plastic_strain(
     states: &[Vec<[f64; 7]>],
     around: &[usize],
+    is_opposed: impl Fn(usize) -> bool,
     target: &TargetPart,
 ) -> Vec<[f64; 7]> {
     let n_points = around.iter().map(|&n| states[n].len()).max().unwrap_or(0);
@@ -102,10 +107,14 @@ fn mean_plastic_strain(
         .filter(|&n| states[n].len() == n_points)
         .collect();
     let all: f64 = usable.iter().map(|&n| target.mesh.areas()[n]).sum();
+    // Layer by layer, in each of them one or more points in the plane.
+    let n_plane = around.first().map_or(1, |&n| target.planes(n));
     let mean = |point: usize| -> f64 {
-        let terms = usable
-            .iter()
-            .map(|&n| target.mesh.areas()[n] * states[n][point][PLASTIC_STRAIN]);
+        let from_other_end = n_points - n_plane - point / n_plane * n_plane + point % n_plane;
+        let terms = usable.iter().map(|&n| {
+            let point = if is_opposed(n) { from_other_end } else { point };
+            target.mesh.areas()[n] * states[n][point][PLASTIC_STRAIN]
+        });
         terms.sum::<f64>() / all
     };
     (0..n_points)

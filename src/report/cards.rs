@@ -8,10 +8,11 @@ mod file_name;
 
 use crate::formats::keyword::card::Layout;
 use crate::formats::keyword::fixed_width::fixed_width;
+use crate::formats::keyword::rename::name_lines;
 use crate::geometry::{Aabb, Matrix3, MatrixError, Point3, Similarity, Vector3};
 
 pub use super::card_reader::{ReadBackError, read_back, read_back_in};
-pub use file_name::{check_file_name, file_name_fault, name_lines};
+pub use file_name::{check_file_name, file_name_fault};
 
 /// A set of cards that aligns the stamped part with the crash part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -123,6 +124,14 @@ impl Default for CardOptions {
             comments: Vec::new(),
         }
     }
+}
+
+/// A search radius rounded up to a thousandth of itself or of a length. The solver takes one below 0.001 for its own
+/// default.
+fn rounded_radius(radius: f64) -> f64 {
+    let digits = (3.0 - radius.log10().floor()).clamp(3.0, 6.0);
+    let per_step = 10_f64.powf(digits).round();
+    ((radius * per_step).ceil() / per_step).max(0.001)
 }
 
 /// Scales that are no change of units: parts of one unit differ by less in size.
@@ -289,7 +298,7 @@ impl Sheet {
 
     fn file_name(&mut self, name: &str) -> Result<(), CardError> {
         check_file_name(name)?;
-        for line in name_lines(name) {
+        for line in name_lines(name).into_iter().flatten() {
             self.line(&line);
         }
         Ok(())
@@ -408,8 +417,7 @@ fn stamped_part(
     sheet.file_name(&options.file_name)?;
     sheet.names("pid thick pstrn strain stress incout - rmax");
     let zero = sheet.int(0)?;
-    // The solver takes a radius below 0.001 for its own default.
-    let radius = (options.search_radius * 1000.0).ceil().max(1.0) / 1000.0;
+    let radius = rounded_radius(options.search_radius);
     let mut fields = vec![sheet.int(id)?];
     fields.extend(std::iter::repeat_n(zero.clone(), 5));
     fields.extend([sheet.blank(), sheet.real(radius)?]);

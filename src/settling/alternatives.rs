@@ -8,7 +8,7 @@ use super::candidate::{Candidate, FewPlaces, Judged, LEAST_SHARED, is_much_close
 use super::chosen_pose::{ChosenPose, as_likely, beaten};
 use super::context::PairContext;
 use super::refine_with_borders::Refinement;
-use crate::assess::contact::MAX_NODES;
+use crate::assess::contact::FEW_NODES;
 use crate::assess::free_motion::weak_motion;
 use crate::assess::shape::OVERHANGS;
 use crate::assess::tolerance::Distances;
@@ -49,7 +49,7 @@ pub fn chosen_by_shape(
     if near.is_empty() {
         return Ok(None);
     }
-    let refinement = Refinement::new(context, found.scale, MAX_NODES);
+    let refinement = Refinement::new(context, found.scale, FEW_NODES);
     let refine = |other: &&Alternative| {
         let pose = other.target_from_source;
         Ok(refinement.closest(&pose)?.unwrap_or(pose))

@@ -6,7 +6,7 @@ use super::candidate::{Candidate, judged};
 use super::chosen_pose::ChosenPose;
 use super::context::PairContext;
 use super::refine_with_borders::{Least, Refinement};
-use crate::assess::contact::MAX_NODES;
+use crate::assess::contact::FEW_NODES;
 use crate::assess::tolerance::is_source_smaller;
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
@@ -37,7 +37,7 @@ pub fn placed_by_holes(
     if !is_open(&Candidate::at(*found, &context.shape(found))) {
         return Ok(None);
     }
-    let refinement = Refinement::new(context, 1.0, MAX_NODES);
+    let refinement = Refinement::new(context, 1.0, FEW_NODES);
     let refine = |pose: &Similarity| Ok(refinement.refined(pose, Least::Any)?.unwrap_or(*pose));
     let found_on_holes = poses(context)?.par_iter();
     let refined: Result<Vec<Similarity>, Cancelled> = found_on_holes.map(refine).collect();

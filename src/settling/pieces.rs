@@ -7,7 +7,7 @@ use super::chosen_pose::ChosenPose;
 use super::context::PairContext;
 use super::holes::found_by;
 use super::refine_with_borders::Refinement;
-use crate::assess::contact::{MAX_NODES, Meeting};
+use crate::assess::contact::{FEW_NODES, Meeting};
 use crate::assess::shape::OVERHANGS;
 use crate::geometry::Similarity;
 use crate::monitor::Cancelled;
@@ -48,7 +48,7 @@ pub fn placed_by_pieces(
         return Ok(None);
     }
     let poses = worth_refining(context, &few, own)?;
-    let refinement = Refinement::new(context, found.scale, MAX_NODES);
+    let refinement = Refinement::new(context, found.scale, FEW_NODES);
     let refine = |pose: &Similarity| Ok(refinement.closest(pose)?.unwrap_or(*pose));
     let refined: Result<Vec<Similarity>, Cancelled> = poses.par_iter().map(refine).collect();
     let on_pieces = judged(context, found, &refined?, |pose, shape| {

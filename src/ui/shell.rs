@@ -416,7 +416,7 @@ impl Shell {
     /// The desktop wants the window closed: asks first if work would be lost.
     fn asked_to_close(&self, ctx: &egui::Context) -> Option<Command> {
         let is_asked = ctx.input(|input| input.viewport().close_requested());
-        if !is_asked || self.may_close || !self.state.is_unsaved() {
+        if !is_asked || self.may_close || !self.state.would_lose_work() {
             return None;
         }
         ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);

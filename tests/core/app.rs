@@ -1352,6 +1352,24 @@ fn the_own_window_is_fitted_to_the_part_where_it_is_while_starts_are_tried() {
     assert_eq!(window.state.view.cameras.stamped, before);
 }
 
+/// What is hidden is not brought into view.
+#[test]
+fn fitting_all_leaves_out_what_is_hidden() {
+    let mut window = Window::new();
+    window.open("car.k", Role::Crash);
+    let height = |window: &mut Window| {
+        window.apply(ViewCommand::FitBoth);
+        window.state.view.cameras.crash.height
+    };
+    let whole = height(&mut window);
+    window.apply(PartCommand::ShowOnly(PartRef {
+        role: Role::Crash,
+        id: 22,
+    }));
+    let shown = height(&mut window);
+    assert!(shown < 0.8 * whole, "{shown} of {whole}");
+}
+
 #[test]
 fn moving_over_fifty_times_changes_nothing_but_the_view() {
     let mut window = Window::with_both();

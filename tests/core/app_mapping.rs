@@ -190,6 +190,36 @@ pub(super) fn mapped_in_full() -> (Window, tempfile::TempDir) {
     (window, folder)
 }
 
+/// What was mapped, pinned and compared belongs to the crash part.
+#[test]
+fn another_crash_part_takes_the_mapping_with_it() {
+    let (mut window, folder) = mapped_in_full();
+    let id = window.part(Role::Crash).loaded.model.shells[0].id;
+    window.apply(MapCommand::TogglePin(id));
+    assert_eq!(window.state.document.mapping.pins, [id]);
+    let stamped = window.part(Role::Stamped).loaded.path.clone();
+    let other = folder.path().join("another.k");
+    std::fs::copy(&window.part(Role::Crash).loaded.path, &other).unwrap();
+    window.apply(shapematch::app::FileCommand::Open {
+        paths: vec![other],
+        role: Some(Role::Crash),
+    });
+    let mapping = &window.state.document.mapping;
+    assert!(mapping.result.is_none() && mapping.pins.is_empty());
+    window.act(Action::Undo);
+    assert_eq!(window.state.document.mapping.pins, [id]);
+    // Another stamped part leaves the pins.
+    let another = folder.path().join("another.dynain");
+    std::fs::copy(stamped, &another).unwrap();
+    window.apply(shapematch::app::FileCommand::Open {
+        paths: vec![another],
+        role: Some(Role::Stamped),
+    });
+    let mapping = &window.state.document.mapping;
+    assert!(mapping.result.is_none());
+    assert_eq!(mapping.pins, [id]);
+}
+
 #[test]
 fn pictures_of_a_mapping_are_chosen_and_say_what_the_values_say() {
     let (mut window, _folder) = mapped_in_full();

@@ -255,3 +255,62 @@ fn files_that_are_dropped_while_others_are_read_are_sorted_by_content() {
     let name = |role| window.part(role).loaded.file_name();
     assert_eq!(Role::ALL.map(name), ["crash.k", "stamped.k"]);
 }
+
+/// What is asked of the parts while one is made anew would be about the one before.
+#[test]
+fn a_match_waits_for_the_parts_that_are_being_read() {
+    let mut window = car_and_stamped();
+    window.holds = true;
+    window.apply(PartCommand::UseOnly(crash_part(22)));
+    let reading = Err(Reason("A part is still being read."));
+    assert_eq!(window.state.can_match(), reading);
+    assert_eq!(Action::MatchOrStop.enabled(&window.state), reading);
+    assert_eq!(Action::Swap.enabled(&window.state), reading);
+    window.act(Action::MatchOrStop);
+    window.apply(FileCommand::Swap);
+    assert!(!window.state.jobs.is_active(JobKey::Match));
+    window.finish_held();
+    assert_eq!(used(&window), [22]);
+    assert_eq!(window.state.can_match(), Ok(()));
+}
+
+/// A part that was closed does not come back with the end of its reading.
+#[test]
+fn a_part_that_is_closed_while_it_is_read_stays_closed() {
+    let mut window = Window::with_both();
+    window.holds = true;
+    window.apply(FileCommand::Reload(Role::Stamped));
+    window.apply(FileCommand::Close(Role::Stamped));
+    window.finish_held();
+    assert!(window.state.document.part(Role::Stamped).is_none());
+}
+
+/// The window asks the same question whichever way it is closed.
+#[test]
+fn a_running_match_would_be_lost_with_the_window() {
+    let mut window = Window::with_both();
+    assert!(!window.state.would_lose_work());
+    window.holds = true;
+    window.act(Action::MatchOrStop);
+    assert!(!window.state.is_unsaved());
+    assert!(window.state.would_lose_work());
+}
+
+/// A level that was asked for once more by hand is a step of its own.
+#[test]
+fn reducing_again_after_a_reload_is_an_undo_step() {
+    let mut window = Window::with_both();
+    let reduce = ReduceCommand::To {
+        roles: PerRole::new(true, false),
+        max_triangles: 60,
+    };
+    window.apply(reduce.clone());
+    window.apply(FileCommand::Reload(Role::Crash));
+    let part = window.part(Role::Crash);
+    assert!(part.wanted_level.is_some());
+    let n_done = window.state.history.n_done();
+    let is_reduced = part.level.is_some();
+    window.apply(reduce);
+    assert!(window.part(Role::Crash).level.is_some());
+    assert!(is_reduced || window.state.history.n_done() == n_done + 1);
+}

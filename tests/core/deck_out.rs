@@ -5,8 +5,8 @@ use std::path::Path;
 use proptest::prelude::*;
 use shapematch::formats::keyword::write::{WriteOptions, write};
 use shapematch::formats::model::{
-    Material, Nodes, Part, Plies, Section, Set, Shell, ShellExtra, ShellFormulation, Solid,
-    SolidKind, StrainPoint, StressPoint,
+    Material, Nodes, Part, Plies, Section, Set, Shell, ShellControl, ShellExtra, ShellFormulation,
+    Solid, SolidKind, StrainPoint, StressPoint,
 };
 use shapematch::formats::moved::moved;
 use shapematch::formats::{Memory, Model, ReadOptions, read_from};
@@ -14,13 +14,19 @@ use shapematch::geometry::{Point3, Pose, Similarity, Vector3};
 use shapematch::monitor::Monitor;
 
 fn again(model: &Model) -> Model {
+    let (back, findings) = read_back(model);
+    assert!(findings.is_empty(), "{}", findings.join("\n"));
+    back
+}
+
+/// A model written and read again, and what is told of it.
+fn read_back(model: &Model) -> (Model, Vec<String>) {
     let bytes = write(model, &WriteOptions::default(), &Monitor::silent()).unwrap();
     let source = Memory::new().with("out.k", bytes);
     let options = ReadOptions::default();
     let back = read_from(&source, Path::new("out.k"), &options, &Monitor::silent()).unwrap();
-    let findings: Vec<String> = back.diagnostics.iter().map(ToString::to_string).collect();
-    assert!(findings.is_empty(), "{}", findings.join("\n"));
-    back
+    let findings = back.diagnostics.iter().map(ToString::to_string).collect();
+    (back, findings)
 }
 
 /// One of everything; ids begin at `first`.
@@ -69,7 +75,7 @@ fn add_parts(model: &mut Model) {
         formulation: ShellFormulation {
             elform: -16,
             n_layers: 5,
-            has_own_rule: false,
+            own_rule: None,
             is_trapezoidal: false,
         },
     }];
@@ -231,6 +237,56 @@ fn formulation_and_layers_of_plies_and_what_is_known_of_materials_are_kept() {
         (scaled.materials[0].density, scaled.materials[0].modulus),
         (0.0, 0.0)
     );
+}
+
+/// What says how sections and stresses are read is kept with them.
+#[test]
+fn axes_and_integration_rules_are_kept() {
+    let mut model = everything(1);
+    model.shell_control = ShellControl {
+        elform: 16,
+        is_lobatto: true,
+        element_axes_set: 5,
+    };
+    model.sections[0].formulation.own_rule = Some(77);
+    let back = again(&model);
+    assert_eq!(back.shell_control, model.shell_control);
+    assert_eq!(back.sections, model.sections);
+    let stress = |model: &Model| model.forming.stresses().next().unwrap().points[0].stress;
+    let [xx, yy, zz, xy, yz, zx] = stress(&model);
+    // Element axes turn with the elements; in the order 2 1 4 3 the first one points the other way.
+    let turn = Similarity::from(Pose::new(Vector3::x(), Vector3::new(0.3, -1.0, 2.0)));
+    assert_eq!(stress(&moved(&model, &turn)), stress(&model));
+    let mirrored = moved(&model, &turn.after(&Similarity::mirror_x()));
+    assert_eq!(stress(&mirrored), [xx, yy, zz, -xy, yz, -zx]);
+    // Of another set the stresses are global.
+    model.sets.parts.get_mut(&5).unwrap().ids = vec![2];
+    assert_ne!(stress(&moved(&model, &turn)), stress(&model));
+}
+
+/// The widest id decides, whatever has it.
+#[test]
+fn ids_of_sets_and_results_have_room() {
+    let wide = 12_345_678_901;
+    let mut of_set = everything(1);
+    let members = Set {
+        ids: vec![wide + 1, 2],
+        ..Set::default()
+    };
+    of_set.sets.nodes.insert(8, members);
+    let mut of_key = everything(1);
+    of_key.sets.shells.insert(wide, Set::default());
+    for model in [of_set, of_key] {
+        same(&model, &again(&model));
+    }
+    // Results may be those of a shell that the file does not hold, which is told.
+    let mut of_results = everything(1);
+    of_results
+        .forming
+        .add_strain(wide, 1, &[StrainPoint::default()]);
+    let (back, findings) = read_back(&of_results);
+    same(&of_results, &back);
+    assert_eq!(findings.len(), 1, "{findings:?}");
 }
 
 proptest! {

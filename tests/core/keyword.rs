@@ -689,6 +689,11 @@ fn a_negative_part_set_ends_a_range_of_sets() {
         members("12,0,0,0,0,0,0,6\n-10"),
         (vec![120, 60, 90, 91], vec![])
     );
+    // Ranges that overlap give each set once.
+    assert_eq!(
+        members("5,-9,6,-12,5,-7"),
+        (vec![50, 60, 90, 91, 120], vec![])
+    );
     let (ids, told) = members("-9");
     assert_eq!((ids, told.len()), (vec![], 1));
     assert!(told[0].contains("ends a range of sets"), "{told:?}");

@@ -415,7 +415,7 @@ mod columns {
     }
 
     #[test]
-    fn decimal_commas_and_misplaced_keywords_are_named() {
+    fn decimal_commas_blanks_and_misplaced_keywords_are_named() {
         let node = format!("*NODE\n{:8}{:>16}{:>16}{:>16}\n", 9, "0,5", "1,25", "3,0");
         let model = read_text(format!("{NODES}{PART}{SHELL}{node}"));
         let text = only(&model).to_string();
@@ -423,6 +423,12 @@ mod columns {
             text.contains("the node cannot be read: a decimal comma?"),
             "{text}"
         );
+        for (keyword, card) in [("NODE", "9 0.5 1.25 3.0"), ("ELEMENT_SHELL", "9 1 1 2 3 4")] {
+            let model = read_text(format!("{NODES}{PART}{SHELL}*{keyword}\n{card}\n"));
+            let text = only(&model).to_string();
+            assert!(text.contains("blanks between its values?"), "{text}");
+            assert!(text.contains("or commas between the values"), "{text}");
+        }
         for deck in [
             format!("{NODES}{PART}{SHELL} *ELEMENT_SHELL\n"),
             format!("{NODES}{PART}{SHELL}*NODE\n *SET_NODE\n"),

@@ -400,6 +400,55 @@ fn a_file_is_read_with_the_width_of_the_deck_around_it() {
     assert_eq!(stressed, [101, 102]);
 }
 
+/// What is written is read back beside the nodes of the deck, whose ids may ask for wider fields.
+#[test]
+fn nodes_of_wider_ids_do_not_change_how_a_file_is_read() {
+    let offset = "*INCLUDE_TRANSFORM\nother.k\n 200000000 200000000\n\n\n\n*END\n";
+    let ten = "*NODE%\n1234567890             0.0             0.0            99.0\n*END\n";
+    let long = "*NODE+\n         12345678901                 0.0                 0.0                99.0\n*END\n";
+    for cards in [offset, ten, long] {
+        let deck = crash(2, "").replace("*END\n", cards);
+        let pair = Pair::new(&deck, &stamped(2, &stresses(1..=2)));
+        std::fs::write(pair.path("other.k"), strip(1, [8, 16])).unwrap();
+        for kind in ["include", "part", "deck"] {
+            written(&pair, kind, FULL);
+        }
+        // Another mapper's file without nodes has the format of the deck, too.
+        std::fs::write(pair.path("other_mapper.k"), stamped(2, "").split_off(8)).unwrap();
+        written(&pair, "part", FULL);
+        let output = pair.map(&["--compare", "out.k"]);
+        let told = String::from_utf8_lossy(&output.stdout);
+        assert!(told.contains("2 elements in both"), "{told}");
+        let compared = told.split("2 elements in both").nth(1).unwrap();
+        assert!(compared.contains("hickness"), "{told}");
+    }
+}
+
+/// The rest of a thickness card stays, and a keyword may have blanks behind its star.
+#[test]
+fn tabs_on_a_thickness_card_and_blanks_in_a_keyword_are_kept_or_read() {
+    let elements = |deck: &str| {
+        let at = deck.find("*ELEMENT_SHELL\n").unwrap();
+        deck.split_at(at).0.to_owned()
+    };
+    let deck = crash(1, "");
+    let tabs = format!(
+        "{}*ELEMENT_SHELL_BETA\n{}\t     1.0\t     1.0\t     1.0\t     1.0\t    30.0\n*END\n",
+        elements(&deck),
+        square(101, 7, 0, 8)
+    );
+    let pair = Pair::new(&tabs, &stamped(1, ""));
+    written(&pair, "deck", "thickness");
+    let read = model(&pair.path("out.k"));
+    let extra = &read.shell_extras[0];
+    assert_eq!((extra.beta, extra.thickness), (30.0, [0.9; 4]));
+    let blank = deck.replace("*ELEMENT_SHELL\n", "* ELEMENT_SHELL\n");
+    for kind in ["include", "part", "deck"] {
+        let pair = Pair::new(&blank, &stamped(1, ""));
+        written(&pair, kind, "thickness");
+    }
+}
+
 #[test]
 fn a_file_of_another_width_is_listed_with_the_width_of_its_cards() {
     let part = crash(2, "").replace("*ELEMENT_SHELL\n", "*ELEMENT_SHELL%\n");

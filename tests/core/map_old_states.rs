@@ -172,6 +172,22 @@ fn old_states_in_included_files_are_left_out_of_copies_of_these() {
     }
 }
 
+/// The copy of a packed file is not packed, and its name says so.
+#[test]
+fn a_packed_file_has_an_unpacked_copy() {
+    let [with, rest] = old_states(10);
+    let deck = crash(3, "").replace("*END\n", "*INCLUDE\nold.k.gz\n*END\n");
+    let pair = Pair::new(&deck, &two_squares());
+    let file = std::fs::File::create(pair.path("old.k.gz")).unwrap();
+    let mut packer = flate2::write::GzEncoder::new(file, flate2::Compression::fast());
+    std::io::Write::write_all(&mut packer, with.as_bytes()).unwrap();
+    packer.finish().unwrap();
+    let text = written(&pair, "deck", REPLACE);
+    assert!(text.contains("*INCLUDE\nout_old.k\n"), "{text}");
+    let copy = std::fs::read_to_string(pair.path("out_old.k")).unwrap();
+    assert_eq!(copy, rest);
+}
+
 #[test]
 fn an_include_says_what_to_do_with_old_states_and_a_copy_is_made_on_request() {
     let plain = crash(3, "");

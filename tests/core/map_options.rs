@@ -455,3 +455,27 @@ fn a_mapping_of_nothing_is_no_success() {
     let told = errors(&output);
     assert!(told.contains("nothing is mapped"), "{told}");
 }
+
+/// A pose with a scale is told, because it changes no thickness, and so is a reference surface off the middle.
+#[test]
+fn scales_of_poses_and_nodes_off_the_mid_surface_are_told() {
+    let strip = Strip::new();
+    let told = |strip: &Strip, pose: &str| {
+        let output = strip.map(&["--pose", pose]);
+        errors(&output).to_owned()
+    };
+    let scaled = told(&strip, "1.001 0 0 0  0 1.001 0 0  0 0 1.001 0  0 0 0 1");
+    assert!(
+        scaled.contains("the pose scales the part by 1.001, and no thickness"),
+        "{scaled}"
+    );
+    let rigid = "1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1";
+    assert!(!told(&strip, rigid).contains("scales"));
+    assert!(!told(&strip, rigid).contains("mid-surface"));
+    let deck = std::fs::read_to_string(strip.path("crash.k")).unwrap();
+    let off = deck.replace("       1.0\n", &("       1.0".repeat(5) + "\n"));
+    assert_ne!(off, deck);
+    std::fs::write(strip.path("crash.k"), off).unwrap();
+    let told = told(&strip, rigid);
+    assert!(told.contains("nodes lie off the mid-surface"), "{told}");
+}

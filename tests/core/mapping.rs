@@ -975,6 +975,46 @@ fn unmapped_rings_are_filled_and_marked() {
     }
 }
 
+/// Each side of the sheet keeps its plastic strain where the normals of neighbours point to opposite sides.
+#[test]
+fn filled_elements_keep_the_sides_of_the_sheet() {
+    let through = |_: usize, t: f64, _: &ShellMesh| [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.1 + 0.05 * t];
+    let part = source(Blank::new(5.0).mesh(flat), 3, through);
+    let mut onto = longer_blank(120.0);
+    let mesh = &onto.mesh;
+    let reversed = |(element, corners): (usize, &[u32; 4])| {
+        let [a, b, c, d] = *corners;
+        if element % 3 == 0 {
+            [d, c, b, a]
+        } else {
+            *corners
+        }
+    };
+    let corners = mesh.corners().iter().enumerate().map(reversed).collect();
+    onto.mesh = ShellMesh::new(mesh.positions().to_vec(), corners, mesh.parts().to_vec()).unwrap();
+    let options = MapOptions {
+        fill_rings: 2,
+        ..full()
+    };
+    for n_plane in [1, 4] {
+        onto.n_plane.fill(n_plane);
+        let mapped = map_one(&part, Similarity::identity(), &onto, &options);
+        assert_eq!(mapped.counts()[Status::Filled as usize], 2 * 12);
+        let states = mapped.states.as_ref().unwrap();
+        for element in 0..onto.mesh.len() {
+            let places = onto.rules[0].places().iter();
+            let side = onto.mesh.normals()[element].z.signum();
+            let n = usize::from(n_plane);
+            for (place, layer) in places.zip(states.of(element).chunks(n)) {
+                for state in layer {
+                    let expected = 0.1 + 0.05 * side * place;
+                    assert!((state[6] - expected).abs() < 1e-9, "{element}: {state:?}");
+                }
+            }
+        }
+    }
+}
+
 /// A stamped part without thickness beyond x = 50, and one without states there.
 fn without_a_half(whole: &SourcePart) -> [SourcePart; 2] {
     let [mut no_thickness, mut no_states] = [whole.clone(), whole.clone()];

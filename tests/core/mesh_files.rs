@@ -460,6 +460,31 @@ fn what_exporters_write_into_a_ply_is_read() {
 }
 
 #[test]
+fn a_second_property_named_like_the_corners_is_none() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+        property float z\nelement face 1\nproperty list uchar int vertex_indices\n\
+        property int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 7\n";
+    let model = read("a.ply", text).unwrap();
+    assert_eq!((model.shells.len(), model.diagnostics.total()), (1, 0));
+    // A polygon that names no point is told by its number in the file.
+    let second = text.replace("element face 1", "element face 2") + "3 0 1 9 7\n";
+    let model = read("a.ply", second).unwrap();
+    let told: Vec<String> = model.diagnostics.iter().map(ToString::to_string).collect();
+    assert_eq!(model.shells.len(), 1);
+    assert!(told[0].contains("polygon 2 names a point"), "{told:?}");
+}
+
+#[test]
+fn elements_without_properties_promise_no_more_than_the_file_holds() {
+    let head = "ply\nformat ascii 1.0\n".to_owned();
+    let text = head + &"element nothing 900\n".repeat(50) + "end_header\n";
+    assert!(matches!(
+        read("a.ply", text),
+        Err(FormatError::Broken { .. })
+    ));
+}
+
+#[test]
 fn what_exporters_write_into_an_stl_is_read() {
     let one_line = "solid a part facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 \
         vertex 0 1 0 endloop endfacet endsolid a part solid b facet normal nan nan nan outer loop \

@@ -154,6 +154,21 @@ fn on_a_full_disk_the_old_file_survives_and_the_others_are_written() {
         "{left:?}"
     );
 
+    // Both files of a mapping stay as they are where one of them cannot be written.
+    for name in ["mapped.k", "mapped_elements.k"] {
+        fs::write(at(name), "the old file").unwrap();
+    }
+    let output = Command::new("sh")
+        .current_dir(folder.path())
+        .args(["-c", script, env!("CARGO_BIN_EXE_shapematch")])
+        .args(["map", "crash.k", "stamped.dynain", "--out", "mapped.k"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    for name in ["mapped.k", "mapped_elements.k"] {
+        assert_eq!(fs::read_to_string(at(name)).unwrap(), "the old file");
+    }
+
     let full = ["match", "crash.k", "stamped.dynain", "--json", "/dev/full"];
     let output = shapematch(folder.path(), &full);
     assert_eq!(output.status.code(), Some(1));
@@ -363,6 +378,29 @@ fn a_folder_is_named_and_goes_again_where_nothing_is_mapped() {
     fs::create_dir(folder.path().join("mapped")).unwrap();
     assert_eq!(shapematch(folder.path(), &line).status.code(), Some(1));
     assert!(folder.path().join("mapped").exists(), "it was there before");
+}
+
+/// A title in another encoding goes to standard output as it stands in the deck.
+#[test]
+fn standard_output_takes_the_bytes_of_a_deck() {
+    let folder = pair();
+    let at = |name: &str| folder.path().join(name);
+    let mut deck = fs::read(at("crash.k")).unwrap();
+    deck.splice(0..0, *b"$ Gr\xf6\xdfe\n");
+    fs::write(at("crash.k"), &deck).unwrap();
+    let line = [
+        "map",
+        "crash.k",
+        "stamped.dynain",
+        "--write",
+        "deck",
+        "--out",
+    ];
+    let mapped = |out: &str| shapematch(folder.path(), &[&line[..], &[out]].concat());
+    let printed = mapped("-");
+    assert!(printed.status.success(), "{}", said(&printed));
+    assert!(mapped("out.k").status.success());
+    assert_eq!(printed.stdout, fs::read(at("out.k")).unwrap());
 }
 
 #[cfg(target_os = "linux")]

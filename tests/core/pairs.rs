@@ -131,6 +131,23 @@ fn points_on_a_line_are_refused_with_the_reason() {
 }
 
 #[test]
+fn a_point_of_a_pair_that_is_gone_is_not_picked_anew() {
+    let mut window = with_pairs(3);
+    window.apply(PairCommand::Repick {
+        pair: 2,
+        role: Role::Crash,
+    });
+    while window.state.document.current_pairs().len() > 1 {
+        window.act(Action::Undo);
+    }
+    let (place, role) = window.state.next_pick().unwrap();
+    assert!(place <= 1, "{place}");
+    pick(&mut window, role, Point3::origin());
+    let pairs = window.state.document.current_pairs();
+    assert!(pairs[place].get(role).is_some());
+}
+
+#[test]
 fn a_wrong_pair_is_named_and_picked_again() {
     let mut window = with_pairs(4);
     window.apply(PairCommand::Repick {

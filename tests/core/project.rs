@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use proptest::prelude::*;
 use shapematch::app::*;
 use shapematch::geometry::Similarity;
-use shapematch::jobs::{Located, PipelineRunner, ProjectFile, ProjectRequest, Runner as _};
+use shapematch::jobs::{JobKey, Located, PipelineRunner, ProjectFile, ProjectRequest, Runner as _};
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::map::{ChangedParts, PoseOrigin};
 use shapematch::pipeline::match_parts::MatchRecipe;
@@ -492,6 +492,19 @@ fn a_mapping_is_there_again_when_its_project_is_opened() {
     assert_eq!(again.state.history.n_done(), 1);
     // The window looks as it did.
     assert_eq!(again.state.view.display, window.state.view.display);
+    // Saved while the mapping is being made again, the project still has it.
+    let mut early = Window::real();
+    early.holds = true;
+    early.apply(FileCommand::Open {
+        paths: vec![path.clone()],
+        role: None,
+    });
+    while !early.state.jobs.is_active(JobKey::Map) {
+        let (id, kind, stamp) = early.held.remove(0);
+        early.finish(id, kind, stamp);
+    }
+    assert!(early.state.document.current_mapping().is_none());
+    assert!(early.state.to_project(0).is_mapped);
 
     // Mapped at another pose it is of no use.
     window.act(Action::FlipX);

@@ -94,6 +94,43 @@ fn what_the_files_say_is_asked_about_once_and_is_one_undo_step() {
     assert_eq!(window.state.document, after);
 }
 
+/// The factor goes with the unit that it came from, and thicknesses are lengths like all others.
+#[test]
+fn a_unit_that_is_taken_back_takes_its_factor_with_it() {
+    let mut window = Window::new();
+    window.open("crash.k", Role::Crash);
+    window.open("stamped.k", Role::Stamped);
+    window.apply(set(Role::Crash, LengthUnit::Millimeter));
+    let thickness = |window: &Window| window.part(Role::Stamped).facts.parts[0].thickness;
+    let before = thickness(&window);
+    window.apply(set(Role::Stamped, LengthUnit::Meter));
+    assert_eq!(window.part(Role::Stamped).length_factor(), 1000.0);
+    assert_eq!(thickness(&window), before.map(|t| 1000.0 * t));
+    window.apply(FileCommand::SetUnits {
+        role: Role::Stamped,
+        units: None,
+    });
+    assert_eq!(window.part(Role::Stamped).length_factor(), 1.0);
+    assert_eq!(thickness(&window), before);
+}
+
+/// Settings are set as a whole, and the command search remembers its entries among them.
+#[test]
+fn the_command_search_remembers_entries_that_change_settings() {
+    let mut window = Window::new();
+    for typed in ["increase ui scale", "units of the crash file: cm"] {
+        window.open("says_mm.k", Role::Crash);
+        let entry = window.state.palette(typed).remove(0);
+        let scale = window.state.settings.ui_scale;
+        for command in entry.commands(&window.state) {
+            window.apply(command);
+        }
+        assert_eq!(window.state.settings.recent_commands[0], entry.label);
+        let has_grown = window.state.settings.ui_scale > scale;
+        assert_eq!(has_grown, typed.contains("scale"));
+    }
+}
+
 #[test]
 fn units_are_set_from_the_command_search() {
     let mut window = Window::new();

@@ -4,11 +4,12 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use shapematch::geometry::camera::ScreenSize;
 use shapematch::role::Role;
+use shapematch::search::ClosestPoint as _;
 use shapematch::ui::Shell;
 
 use super::layout::texts;
 use super::pairs::click_in;
-use super::story::{click, finish, window};
+use super::story::{click, finish, matched, window};
 
 /// What a screen reader is told of the distance in the picture.
 fn told(window: &Harness<'static, Shell>) -> Vec<String> {
@@ -132,4 +133,48 @@ fn a_distance_from_a_hole_begins_at_its_centre() {
             .all(|text| text.ends_with(", from centre of hole"))
             && told.len() == 1
     );
+}
+
+/// What is drawn apart for the eye is measured where it is.
+#[test]
+fn a_separation_does_not_move_the_nodes_that_are_measured() {
+    let mut window = matched();
+    click(&mut window, "Move over");
+    let slider = window.get_by(|node| {
+        let label = node.label().unwrap_or_default();
+        node.role() == egui::accesskit::Role::Slider && label.contains("apart from where it is")
+    });
+    slider.focus();
+    for _ in 0..40 {
+        window.key_press(egui::Key::ArrowRight);
+        window.run_steps(1);
+    }
+    let separation = window.state().state().view.display.separation;
+    assert!(separation > 1.0, "{separation}");
+    let mut n_stamped = 0;
+    for i in 0..12 {
+        let at = [
+            f32::from(i as u8 % 4) * 37.0 - 60.0,
+            f32::from(i as u8 / 4) * 29.0 - 30.0,
+        ];
+        window.key_press(egui::Key::I);
+        window.run_steps(2);
+        click_in(&mut window, Role::Crash, at.into());
+        let state = window.state().state();
+        let Some(&(role, point)) = state.distance_ends().first() else {
+            continue;
+        };
+        let part = state.document.part(role).expect("it was clicked");
+        let hit = part
+            .loaded
+            .surface
+            .bvh()
+            .closest(&point, f64::INFINITY, None, None);
+        let off = hit.expect("a surface").distance_sq.sqrt();
+        assert!(off < 1e-3, "{role:?} at {at:?}: {off} of {separation}");
+        n_stamped += usize::from(role == Role::Stamped);
+        window.key_press(egui::Key::Escape);
+        window.run_steps(2);
+    }
+    assert!(n_stamped > 2, "{n_stamped}");
 }

@@ -120,7 +120,10 @@ const PARTS: &[ActionRow] = &[
         label: "Swap crash and stamped",
         tooltip: "Exchange the two parts without reading the files again",
         keys: Keys::NONE,
-        enabled: any_part_unlocked,
+        enabled: |state| {
+            any_part_unlocked(state)?;
+            state.jobs.are_parts_read()
+        },
         command: |_| some(FileCommand::Swap),
     },
     ActionRow {

@@ -151,6 +151,12 @@ impl Work<'_> {
 
     fn request(&mut self, output: Output, to: Destination) -> Vec<Effect> {
         if !self.document.can_write(output) {
+            // It was asked for while it could be made, and the dialog stayed open.
+            let text = format!(
+                "{} is not written: what it is made from is gone",
+                output.label()
+            );
+            self.notify(NoticeLevel::Warning, text);
             return Vec::new();
         }
         let input = self.output_input(output);

@@ -13,7 +13,7 @@ pub use distance::DistanceTool;
 pub use section::SectionView;
 
 use super::{AppState, BottomTab, ColorBy, Document, OfParts, Shared};
-use crate::assess::deviation::{DeviationStats, OneWay};
+use crate::assess::deviation::{DeviationStats, OneWay, OverlapClass};
 use crate::geometry::{Point3, Similarity};
 use crate::jobs::{JobKey, Stamp};
 use crate::pipeline::inspect::Comparison;
@@ -178,5 +178,14 @@ impl AppState {
         let field = &self.deviation_of(self.document.role_of(label.part)?)?.field;
         let vertex = label.vertex as usize;
         (vertex < field.signed.len()).then(|| field.compared(vertex))?
+    }
+
+    /// The same in words: that the other part is missing there, or a dash without a comparison.
+    pub fn label_text(&self, label: &Label) -> String {
+        match self.label_value(label) {
+            Some(value) => self.lengths().signed_of(value),
+            None if self.comparison().is_none() => "–".to_owned(),
+            None => OverlapClass::OnlyHere.label().to_owned(),
+        }
     }
 }

@@ -203,9 +203,13 @@ impl Document {
         is_same && poses.is_ok_and(|poses| result.run.poses[1..] == poses)
     }
 
-    /// Takes the further stamped files out, which stand for the crash part; how many there were.
-    pub(in crate::app) fn drop_further(&mut self) -> usize {
-        std::mem::take(&mut self.mapping.further).len()
+    /// Takes out what stands for the crash part: the mapping with what it is compared with, pins, and the further
+    /// stamped files; how many these were.
+    pub(in crate::app) fn drop_for_crash(&mut self) -> usize {
+        let mapping = &mut self.mapping;
+        (mapping.result, mapping.compare_with) = (None, None);
+        mapping.pins.clear();
+        std::mem::take(&mut mapping.further).len()
     }
 }
 

@@ -208,6 +208,7 @@ impl AppState {
         self.document.can_map()?;
         // During the first match there is none yet, but it need not be begun.
         self.jobs.is_unlocked()?;
+        self.jobs.are_parts_read()?;
         self.document.has_pose_to_map_at()
     }
 
@@ -219,6 +220,7 @@ impl AppState {
                 "The stamped part has a pose: Map carries over there.",
             ));
         }
+        self.jobs.are_parts_read()?;
         self.jobs.is_unlocked()
     }
 
@@ -365,7 +367,10 @@ fn toggle_pin(work: &mut Work<'_>, id: u64) {
 }
 
 fn start(work: &mut Work<'_>) -> Vec<Effect> {
-    if work.document.can_map().is_err() || work.is_unlocked().is_err() {
+    let may_start = work.document.can_map().is_ok()
+        && work.is_unlocked().is_ok()
+        && work.jobs.are_parts_read().is_ok();
+    if !may_start {
         return Vec::new();
     }
     let Some(both) = work.document.both() else {

@@ -222,11 +222,12 @@ impl PairsState {
     /// also be clicked out of turn.
     fn next_pick(&self, document: &Document) -> Option<(usize, Role)> {
         let tool = self.tool?;
-        if let Some(repick) = tool.repick {
-            return Some(repick);
-        }
         let pairs = document.current_pairs();
         let n_pairs = pairs.len();
+        // Undo, or another part, may have taken the pair away.
+        if let Some(repick) = tool.repick.filter(|(pair, _)| *pair < n_pairs) {
+            return Some(repick);
+        }
         Some(match pairs.last() {
             Some(last) if last.crash.is_none() => (n_pairs - 1, Role::Crash),
             Some(last) if last.stamped.is_none() => (n_pairs - 1, Role::Stamped),

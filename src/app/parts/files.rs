@@ -71,6 +71,8 @@ impl PartsState {
             }
             FileCommand::ChangedOnDisk(_) => Vec::new(),
             FileCommand::Close(role) => self.close(work, role),
+            // What is being read comes under the role that it has now.
+            FileCommand::Swap if work.jobs.are_parts_read().is_err() => Vec::new(),
             FileCommand::Swap => self.swap(work),
             FileCommand::SetLengthFactor { role, factor } => {
                 self.set_length_factor(work, role, factor)
@@ -202,7 +204,9 @@ impl PartsState {
             *document.parts.get_mut(role) = None;
             document.result = None;
             if role == Role::Crash {
-                n_dropped = Some(document.drop_further());
+                n_dropped = Some(document.drop_for_crash());
+            } else {
+                document.mapping.result = None;
             }
             document.pose = StampedPose {
                 revision,
@@ -211,7 +215,15 @@ impl PartsState {
         });
         self.forget_missing(work.document);
         further_dropped(work, n_dropped);
-        Vec::new()
+        let of_part = [
+            JobKey::Load(role),
+            JobKey::Reselect(role),
+            JobKey::Reduce(role),
+        ];
+        of_part
+            .into_iter()
+            .flat_map(|key| work.cancel(key))
+            .collect()
     }
 
     fn swap(&mut self, work: &mut Work<'_>) -> Vec<Effect> {
@@ -228,7 +240,7 @@ impl PartsState {
             if document.parts.crash.is_some() || document.parts.stamped.is_some() {
                 document.parts.swap();
                 document.result = None;
-                n_dropped = Some(document.drop_further());
+                n_dropped = Some(document.drop_for_crash());
                 document.pose = StampedPose {
                     revision,
                     ..StampedPose::default()
@@ -440,12 +452,15 @@ impl PartsState {
                 };
                 // Further stamped files stand for the crash part that they were added to.
                 if role == Role::Crash {
-                    n_dropped = Some(document.drop_further());
-                } else if let Some(crash) = &mut document.parts.crash
-                    && !crash.loaded.settings.alike_parts.is_empty()
-                {
-                    // They fit the stamped part before.
-                    crash.loaded = Arc::new(crash.loaded.without_alike_parts()).into();
+                    n_dropped = Some(document.drop_for_crash());
+                } else {
+                    document.mapping.result = None;
+                    if let Some(crash) = &mut document.parts.crash
+                        && !crash.loaded.settings.alike_parts.is_empty()
+                    {
+                        // They fit the stamped part before.
+                        crash.loaded = Arc::new(crash.loaded.without_alike_parts()).into();
+                    }
                 }
             }
             *document.parts.get_mut(role) = Some(new);

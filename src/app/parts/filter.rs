@@ -15,6 +15,12 @@ enum Term {
     Word(String),
 }
 
+impl Term {
+    fn is_thickness(&self) -> bool {
+        matches!(self, Self::Thickness(..))
+    }
+}
+
 /// Conditions that must all hold; commas separate alternatives.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PartFilter {
@@ -24,7 +30,9 @@ pub struct PartFilter {
 impl PartFilter {
     /// Reads what was typed; anything that is no number is a word.
     pub fn parse(text: &str) -> Self {
-        let alternatives = text.split(',').map(str::trim).filter(|t| !t.is_empty());
+        let alternatives = split(text);
+        let alternatives = alternatives.iter().map(|t| t.trim());
+        let alternatives = alternatives.filter(|t| !t.is_empty());
         let terms = |text: &str| text.split_whitespace().map(term).collect();
         Self {
             alternatives: alternatives.map(terms).collect(),
@@ -39,6 +47,23 @@ impl PartFilter {
                 .iter()
                 .any(|terms| terms.iter().all(|term| fits(term, part)))
     }
+}
+
+/// The alternatives between commas; one between digits of a thickness is a decimal comma.
+fn split(text: &str) -> Vec<String> {
+    let mut parts: Vec<String> = Vec::new();
+    for piece in text.split(',') {
+        let goes_on = parts.last_mut().filter(|before| {
+            let last = before.split_whitespace().next_back().unwrap_or_default();
+            let is_open = !last.contains('.') && term(last).is_thickness();
+            is_open && piece.starts_with(|c: char| c.is_ascii_digit())
+        });
+        match goes_on {
+            Some(before) => before.extend([".", piece]),
+            None => parts.push(piece.to_owned()),
+        }
+    }
+    parts
 }
 
 fn term(text: &str) -> Term {
@@ -70,7 +95,7 @@ fn thickness(rest: &str) -> Option<Term> {
         Some(number) => (true, number),
         None => (ordering == Ordering::Equal, rest),
     };
-    let number = number.replace(',', ".").parse().ok()?;
+    let number = number.parse().ok()?;
     Some(Term::Thickness(ordering, or_equal, number))
 }
 
@@ -121,6 +146,11 @@ mod tests {
         assert_eq!(listed("t<=1.2"), [true, false]);
         assert_eq!(listed("t=1.5"), [false, true]);
         assert_eq!(listed("inner, outer"), [true, true]);
+        // A comma within a thickness is a decimal one.
+        assert_eq!(listed("t>1,4"), [false, true]);
+        assert_eq!(listed("t<=1,2"), [true, false]);
+        assert_eq!(listed("t>1,4, inner"), [true, true]);
+        assert_eq!(listed("roof,2000013"), [false, true]);
         assert_eq!(listed("roof"), [false, false]);
     }
 }

@@ -166,10 +166,7 @@ impl Document {
         let used = found.order.iter().filter(|id| both.crash.is_used(**id));
         let of_used = used.filter_map(|id| Some((vec![*id], *found.of_part.get(id)?)));
         let facts = &both.crash.facts;
-        let thickness = |id| {
-            let row = facts.parts.iter().find(|row| row.id == id)?;
-            both.crash.loaded.lengthened(row.thickness)
-        };
+        let thickness = |id| facts.parts.iter().find(|row| row.id == id)?.thickness;
         let joined = joined_signatures(&facts.joined, &facts.moments, thickness);
         let of_joined = joined
             .into_iter()
@@ -196,7 +193,7 @@ impl Document {
         let mut of_part = BTreeMap::new();
         for row in &facts.parts {
             let moments = facts.moments.get(&row.id);
-            let thickness = part.loaded.lengthened(row.thickness);
+            let thickness = row.thickness;
             if let Some(signature) = moments.and_then(|m| m.signature(thickness)) {
                 of_part.insert(row.id, given.likeness(&signature));
             }
@@ -223,7 +220,7 @@ impl Document {
             }
             LikeWhat::Part(of) => {
                 let row = facts.parts.iter().find(|row| row.id == of.id)?;
-                let thickness = part.loaded.lengthened(row.thickness);
+                let thickness = row.thickness;
                 facts.moments.get(&of.id)?.signature(thickness)
             }
         }

@@ -35,7 +35,8 @@ impl PartsState {
             None => format!("Guess the units of {file}"),
         };
         let doubt = doubt_of_set_units(&labelled);
-        let has_changed = part.loaded.settings.units != units;
+        let before = part.loaded.settings.units;
+        let has_changed = before != units;
         let gesture = work.history.next_gesture();
         if has_changed {
             work.commit_in(name, Some(gesture), |document| {
@@ -54,7 +55,12 @@ impl PartsState {
             work.settings.unit_memory.set_units(&path, hash, units);
             effects.push(Effect::SaveSettings);
         }
-        let follows = self.settle_length_factor(work);
+        let follows = if role == Role::Stamped && before.is_some() && units.is_none() {
+            // The factor was that of the unit which is taken back.
+            self.reselect(work, role, |settings| settings.length_factor = 1.0)
+        } else {
+            self.settle_length_factor(work)
+        };
         let is_made_again = |effect: &Effect| matches!(effect, Effect::StartJob(..));
         self.unit_gesture = Some(gesture).filter(|_| follows.iter().any(is_made_again));
         effects.extend(follows);

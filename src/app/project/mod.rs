@@ -109,7 +109,7 @@ impl AppState {
             further_stamped: self.further_entries(),
             mapping_compared_with: document.mapping.compare_with.as_deref().map(absolute),
             mapping_pins: document.mapping.pins.clone(),
-            is_mapped: document.current_mapping().is_some(),
+            is_mapped: document.current_mapping().is_some() || self.is_mapping_restored(),
             result: document.result.as_ref().map(|result| ResultEntry {
                 is_current: document.current_result().is_some(),
                 exchanged: PerRole::from_fn(|role| {
@@ -158,18 +158,28 @@ impl AppState {
         self.has_work() && self.project.saved.as_ref() != Some(&self.document)
     }
 
+    /// True if closing the window now would lose something done or running: it is asked first.
+    pub fn would_lose_work(&self) -> bool {
+        self.is_unsaved() || self.unfinished_work().is_some()
+    }
+
     /// What runs and would be lost if the window closed now.
     pub fn unfinished_work(&self) -> Option<&'static str> {
-        let is_restoring = self.mapping.is_restoring(&self.document);
         let runs = |key| self.jobs.is_active(key);
+        let is_mapping = runs(JobKey::Map) && !self.is_mapping_restored();
         let work = [
             (runs(JobKey::Match), "A match is running."),
             (runs(JobKey::Sweep), "A sweep is running."),
-            (runs(JobKey::Map) && !is_restoring, "A mapping is running."),
+            (is_mapping, "A mapping is running."),
             (self.jobs.is_exporting(), "A file is being written."),
         ];
         work.into_iter()
             .find_map(|(runs, words)| runs.then_some(words))
+    }
+
+    /// True if the mapping of a project that was opened is being made again.
+    fn is_mapping_restored(&self) -> bool {
+        self.jobs.is_active(JobKey::Map) && self.mapping.is_restoring(&self.document)
     }
 
     /// True if there is something new to be kept in case of a crash, and no drag is under way.

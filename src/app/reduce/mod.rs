@@ -25,6 +25,8 @@ pub struct ReduceState {
     recordings: PerRole<Option<(u64, Arc<Recording>)>>,
     /// The one undo step of both parts that were last to be reduced together, with their ceiling.
     together: Option<(GestureId, usize)>,
+    /// Whether the level of a part is being made again, after another selection or unit.
+    is_again: PerRole<bool>,
     /// What the match gave with the loaded pair, one for each level.
     level_results: OfParts<Vec<LevelResult>>,
 }
@@ -115,6 +117,7 @@ impl ReduceState {
         let is_chosen = |role: &Role| *roles.get(*role) && work.document.part(*role).is_some();
         let chosen: Vec<Role> = Role::ALL.into_iter().filter(is_chosen).collect();
         self.together = (chosen.len() > 1).then(|| (work.history.next_gesture(), max_triangles));
+        self.is_again = PerRole::both(false);
         let chosen = chosen.into_iter();
         chosen
             .filter_map(|role| self.reduce(work, role, max_triangles))
@@ -157,6 +160,7 @@ impl ReduceState {
     /// After another selection: the level that was asked for is made again.
     pub(super) fn reduce_again(&mut self, work: &mut Work<'_>, role: Role) -> Vec<Effect> {
         let wanted = work.document.part(role).and_then(|part| part.wanted_level);
+        *self.is_again.get_mut(role) = wanted.is_some();
         wanted
             .and_then(|max_triangles| self.reduce(work, role, max_triangles))
             .into_iter()
@@ -176,7 +180,9 @@ impl ReduceState {
         };
         let revision = part.revision;
         // Made again after another selection or unit, it belongs to that step.
-        let is_again = part.level.is_none() && part.wanted_level == Some(level.max_triangles);
+        let is_again = std::mem::take(self.is_again.get_mut(role))
+            && part.level.is_none()
+            && part.wanted_level == Some(level.max_triangles);
         *self.recordings.get_mut(role) = Some((revision, Arc::clone(&recording)));
         work.log_step(
             LogStep::Reduce,

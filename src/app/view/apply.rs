@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{BottomTab, Display, Fitted, Section, ViewCommand, ViewRoom, ViewState};
-use crate::app::{AppState, Document, PartRef, ShownFile, facts};
+use crate::app::{AppState, Document, Part, PartRef, ShownFile, facts};
 use crate::geometry::{Aabb, Camera, Point3, Similarity, Vector3};
 use crate::pipeline::load::LoadedPart;
 use crate::registration::starts::Start;
@@ -212,11 +212,7 @@ impl ViewState {
     }
 
     fn refit(&mut self, role: Role, room: &ViewRoom, scene: &Scene<'_>) {
-        // Its own window shows the stamped part where it really is, also while the other tries out poses.
-        let stamped_pose = match role {
-            Role::Crash => scene.pose,
-            Role::Stamped => *scene.document.crash_from_stamped(),
-        };
+        let stamped_pose = stamped_pose(role, scene);
         let mut points = Vec::new();
         for of in self.shown_in(role) {
             if let Some(part) = scene.document.part(*of) {
@@ -224,7 +220,7 @@ impl ViewState {
                     Role::Crash => Similarity::identity(),
                     Role::Stamped => stamped_pose,
                 };
-                points.extend(spread(&part.loaded, pose));
+                points.extend(visible_points(part, pose));
             }
         }
         if self.shown_in(role).contains(&Role::Stamped) {
@@ -286,7 +282,7 @@ impl ViewState {
             if let Some(bounds) = bounds.filter(|bounds| !bounds.is_empty()) {
                 all = all.union(&match selected.role {
                     Role::Crash => *bounds,
-                    Role::Stamped => moved_box(bounds, &scene.pose),
+                    Role::Stamped => moved_box(bounds, &stamped_pose(role, scene)),
                 });
             }
         }
@@ -326,14 +322,14 @@ impl ViewState {
         let Some(part) = scene.document.part(role) else {
             return;
         };
-        let at = match role {
-            Role::Crash => *point,
-            Role::Stamped => scene.pose.apply(point),
-        };
         let window = if self.is_moved_over {
             Role::Crash
         } else {
             role
+        };
+        let at = match role {
+            Role::Crash => *point,
+            Role::Stamped => stamped_pose(window, scene).apply(point),
         };
         let half = Vector3::repeat(CLOSE / 2.0 * part.bounds().diagonal());
         let around = Aabb::of_points(&[at - half, at + half]);
@@ -386,6 +382,27 @@ impl AppState {
             Role::Stamped => moved_box(&part.bounds(), &self.shown_pose()),
         }
     }
+}
+
+/// Where a window shows the stamped part: its own where it really is, also while the other one tries out poses.
+fn stamped_pose(window: Role, scene: &Scene<'_>) -> Similarity {
+    match window {
+        Role::Crash => scene.pose,
+        Role::Stamped => *scene.document.crash_from_stamped(),
+    }
+}
+
+/// Points of what is shown of a part, where it is drawn: spread over all of it, or the corners of the boxes of those
+/// parts of the deck that are not hidden.
+fn visible_points(part: &Part, pose: Similarity) -> Vec<Point3> {
+    let boxes = part.facts.part_bounds.iter();
+    let shown = boxes.filter(|(id, bounds)| part.is_visible(**id) && !bounds.is_empty());
+    let corners = shown.flat_map(|(_, bounds)| bounds.corners());
+    let corners: Vec<Point3> = corners.map(|corner| pose.apply(&corner)).collect();
+    if part.hidden.is_empty() || corners.is_empty() {
+        return spread(&part.loaded, pose).collect();
+    }
+    corners
 }
 
 /// Points spread over a part, where it is drawn.

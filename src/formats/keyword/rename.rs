@@ -103,12 +103,12 @@ pub fn rename_includes(
     let (mut copy, mut done, mut renamed) = (Vec::new(), 0, Vec::new());
     for_blocks(deck, included_as, |block| {
         for (name, place) in names(block, bytes) {
-            let Some(lines) = new_name(&name).and_then(|new| on_lines(&new, line_end)) else {
+            let Some(lines) = new_name(&name).and_then(|new| name_lines(&new)) else {
                 continue;
             };
             copy.reserve(bytes.len() - done);
             copy.extend_from_slice(&bytes[done..place.start]);
-            copy.extend_from_slice(lines.as_bytes());
+            copy.extend_from_slice(lines.join(line_end).as_bytes());
             done = place.end;
             renamed.push(name);
         }
@@ -120,17 +120,22 @@ pub fn rename_includes(
     (copy, renamed)
 }
 
-/// A name as it stands in a deck, on several lines where one has no room; `None` where they have none either.
-fn on_lines(name: &str, line_end: &str) -> Option<String> {
-    let (mut lines, mut rest) = (String::new(), name);
-    let mut n_lines = 1;
+/// The lines of a deck that a file name takes, each without its end; `None` where three have no room for it.
+pub fn name_lines(name: &str) -> Option<Vec<String>> {
+    let (mut lines, mut rest) = (Vec::new(), name);
     while rest.len() > COLUMNS {
-        n_lines += 1;
-        let (piece, after) = rest.split_at(rest.floor_char_boundary(COLUMNS_OF_PIECE));
-        lines += &format!("{piece} +{line_end}");
+        let mut places = (1..=COLUMNS_OF_PIECE).rev();
+        let (piece, after) = places.find_map(|at| {
+            let (piece, after) = rest.split_at_checked(at)?;
+            // A line that begins so is a comment, a keyword or a parameter, and blanks at its ends are lost.
+            let is_name = !after.starts_with(['$', '*', '&', ' ']) && !piece.ends_with(' ');
+            is_name.then_some((piece, after))
+        })?;
+        lines.push(format!("{piece} +"));
         rest = after;
     }
-    (n_lines <= MOST_LINES).then_some(lines + rest)
+    lines.push(rest.to_owned());
+    (lines.len() <= MOST_LINES).then_some(lines)
 }
 
 #[cfg(test)]
@@ -158,6 +163,18 @@ mod tests {
             .replacen("long/ +\n$ more\n and +\nc.k", "new_ andc.k", 1)
             .replacen("\nb.k", "\nnew_b.k", 1);
         assert_eq!(String::from_utf8(bytes.unwrap()).unwrap(), expected);
+    }
+
+    #[test]
+    fn no_line_of_a_name_is_a_comment_or_a_keyword() {
+        for sign in ['$', '*', '&', ' '] {
+            let name = format!("{}{sign}{}", "a".repeat(78), "b".repeat(20));
+            let lines = name_lines(&name).unwrap();
+            assert!(!lines[1].starts_with(sign), "{lines:?}");
+            let deck = SourceFile::new("deck.k", format!("*INCLUDE\n{}\n", lines.join("\n")));
+            assert_eq!(includes_of(&deck, &IncludedAs::default()).names, [name]);
+        }
+        assert_eq!(name_lines(&"$".repeat(100)), None);
     }
 
     #[test]

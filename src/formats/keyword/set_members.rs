@@ -139,14 +139,17 @@ impl Resolver<'_> {
 
     fn open(&self, key: Key) -> Open {
         let mut references = BTreeMap::new();
+        let mut covered = Intervals::default();
         for &definition in &self.by_id[&key] {
             for member in &self.raw[definition].1.members {
                 let reference = match *member {
                     Member::Set(id) | Member::Within(id) => (key.0, id),
                     Member::OfPartSet(id) => (SetKind::Part, id),
                     Member::Sets { first, last } => {
-                        for other in self.sets_in(key, first, last) {
-                            references.entry(other).or_insert(definition);
+                        for (first, last) in covered.cover_if_range(first, last) {
+                            for other in self.sets_in(key, first, last) {
+                                references.entry(other).or_insert(definition);
+                            }
                         }
                         continue;
                     }
@@ -236,7 +239,9 @@ impl Resolver<'_> {
             Member::Range { first, last, step } => self.add_range(kind, [first, last, step], to),
             Member::Set(id) => self.add_set(kind, id, to),
             Member::Sets { first, last } => {
-                let sets: Vec<Key> = self.sets_in(own, first, last).collect();
+                let new = to.sets.cover_if_range(first, last).into_iter();
+                let sets = new.flat_map(|(first, last)| self.sets_in(own, first, last));
+                let sets: Vec<Key> = sets.collect();
                 // Empty sets take time too.
                 self.n_left = self.n_left.saturating_sub(sets.len() as u64);
                 sets.into_iter()
@@ -362,6 +367,8 @@ struct Builder {
     listed: Intervals,
     /// Ranges of which every existing id is in the set.
     existing: Intervals,
+    /// Ranges of ids of sets that were added.
+    sets: Intervals,
     /// Parts (or everything) and sets that were added whole.
     whole: BTreeSet<(SetKind, Option<u64>, bool)>,
 }
@@ -386,6 +393,7 @@ impl Builder {
         }
         self.listed.uncover(first, last);
         self.existing.uncover(first, last);
+        self.sets = Intervals::default();
         self.whole.clear();
     }
 
@@ -394,7 +402,7 @@ impl Builder {
         self.ids.retain(|id| ids.contains(id));
         let places = self.ids.iter().enumerate();
         self.place = places.map(|(place, &id)| (id, place)).collect();
-        (self.listed, self.existing) = Default::default();
+        (self.listed, self.existing, self.sets) = Default::default();
         self.whole.clear();
     }
 
@@ -409,6 +417,15 @@ impl Builder {
 pub(super) struct Intervals(BTreeMap<u64, u64>);
 
 impl Intervals {
+    /// [`Intervals::cover`] of a range that may be none.
+    fn cover_if_range(&mut self, first: u64, last: u64) -> Vec<(u64, u64)> {
+        if first <= last {
+            self.cover(first, last)
+        } else {
+            Vec::new()
+        }
+    }
+
     /// Adds `first..=last`; gives the parts of it that were not covered before. O(log n) and what
     /// it joins.
     pub(super) fn cover(&mut self, first: u64, last: u64) -> Vec<(u64, u64)> {

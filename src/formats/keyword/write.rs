@@ -1,6 +1,8 @@
 //! Writes a model as a keyword deck: parts, sections, nodes, elements, sets, forming results.
 
-use super::super::model::{Material, Model, Part, Section, Shell, ShellFormulation, SolidKind};
+use super::super::model::{
+    Material, Model, Part, Section, Shell, ShellControl, ShellFormulation, SolidKind,
+};
 use super::card::Layout;
 use super::fixed_width::fixed_width;
 use super::materials::keyword_of;
@@ -42,9 +44,10 @@ pub fn write(
         monitor,
     };
     deck.head(model, options);
+    deck.shell_control(model.shell_control);
     deck.parts(model);
     deck.materials(model);
-    deck.nodes(model)?;
+    deck.nodes(model, "*NODE")?;
     deck.shells(model)?;
     deck.solids(model)?;
     deck.sets(model)?;
@@ -63,14 +66,44 @@ fn largest_id(model: &Model) -> u64 {
     let shells = model.shells.iter().map(|shell| shell.id);
     let solids = model.solids.iter().map(|solid| solid.id);
     let nodes = model.nodes.ids().iter().copied();
+    let all_sets = [&model.sets.parts, &model.sets.shells, &model.sets.nodes];
+    let sets = all_sets.into_iter().flatten();
+    let sets = sets.flat_map(|(&id, set)| set.ids.iter().copied().chain([id]));
+    let stresses = model.forming.stresses().map(|state| state.element_id);
+    let strains = model.forming.strains().map(|state| state.element_id);
     nodes
         .chain(shells)
         .chain(solids)
         .chain(parts)
         .chain(sections)
         .chain(materials)
+        .chain(sets)
+        .chain(stresses)
+        .chain(strains)
         .max()
         .unwrap_or(0)
+}
+
+/// The first line of a deck with fields of a width, with its end.
+pub fn keyword_line(layout: Layout) -> &'static str {
+    match layout {
+        Layout::Standard => "*KEYWORD\n",
+        Layout::I10 => "*KEYWORD I10=Y\n",
+        Layout::Long => "*KEYWORD LONG=Y\n",
+    }
+}
+
+/// A deck of a width that has the nodes of a model, in fields as wide as their ids ask for, and goes on without its end.
+pub fn write_nodes(model: &Model, layout: Layout, monitor: &Monitor) -> Result<Vec<u8>, Cancelled> {
+    let largest = model.nodes.ids().iter().copied().max();
+    let mut deck = Writer {
+        text: Vec::new(),
+        layout: layout_for(largest.unwrap_or(0)),
+        monitor,
+    };
+    deck.text.extend_from_slice(keyword_line(layout).as_bytes());
+    deck.nodes(model, &format!("*NODE{}", char::from(deck.layout.suffix())))?;
+    Ok(deck.text)
 }
 
 fn layout_for(largest_id: u64) -> Layout {
@@ -89,11 +122,8 @@ struct Writer<'a> {
 
 impl Writer<'_> {
     fn head(&mut self, model: &Model, options: &WriteOptions) {
-        self.line(match self.layout {
-            Layout::Standard => "*KEYWORD",
-            Layout::I10 => "*KEYWORD I10=Y",
-            Layout::Long => "*KEYWORD LONG=Y",
-        });
+        self.text
+            .extend_from_slice(keyword_line(self.layout).as_bytes());
         for comment in options.comments.iter().flat_map(|text| text.lines()) {
             self.line(&format!("$ {comment}"));
         }
@@ -101,6 +131,33 @@ impl Writer<'_> {
             self.line("*TITLE");
             self.title(model, &model.title);
         }
+    }
+
+    /// What is known of `*CONTROL_SHELL`, by which sections and stresses are read; the solver's defaults for the rest.
+    fn shell_control(&mut self, control: ShellControl) {
+        if control == ShellControl::default() {
+            return;
+        }
+        self.line("*CONTROL_SHELL");
+        self.ints_at(&[(4, control.elform)]);
+        self.ints_at(&[(1, i64::from(control.is_lobatto))]);
+        if control.element_axes_set != 0 {
+            self.end();
+            self.end();
+            self.ints_at(&[(1, control.element_axes_set.cast_signed())]);
+        }
+    }
+
+    /// A card of fields of ten columns, blank but for these.
+    fn ints_at(&mut self, fields: &[(usize, i64)]) {
+        let width = self.layout.width(10);
+        let mut next = 0;
+        for &(field, value) in fields {
+            self.right("", (field - next) * width);
+            self.right(&value.to_string(), width);
+            next = field + 1;
+        }
+        self.end();
     }
 
     fn parts(&mut self, model: &Model) {
@@ -120,20 +177,15 @@ impl Writer<'_> {
         for section in sections {
             self.line("*SECTION_SHELL");
             self.int(section.id, 10);
-            match section.formulation {
-                Some(formulation) => {
-                    let width = self.layout.width(10);
-                    self.right(&formulation.elform.to_string(), width);
-                    self.right("", width);
-                    self.int(formulation.n_layers.into(), 10);
-                    if formulation.is_trapezoidal {
-                        self.right("", width);
-                        self.int(1, 10);
-                    }
-                }
-                None => self.int(2, 10),
+            // Behind the id: ELFORM, NIP and QR/IRID.
+            let mut fields = vec![(0, 2)];
+            if let Some(formulation) = section.formulation {
+                fields = vec![(0, formulation.elform), (2, formulation.n_layers.into())];
+                let own_rule = formulation.own_rule.map(|rule| -rule.cast_signed());
+                let rule = own_rule.or(formulation.is_trapezoidal.then_some(1));
+                fields.extend(rule.map(|rule| (4, rule)));
             }
-            self.end();
+            self.ints_at(&fields);
             self.reals(&section.thickness, 10);
             if section.nloc != 0.0 {
                 self.real(section.nloc, 10);
@@ -156,7 +208,12 @@ impl Writer<'_> {
                 continue;
             }
             if written.is_empty() {
-                self.line("$ Of the materials only law, density and modulus are known:");
+                let materials = model.materials.iter();
+                let known = materials.filter(|known| known.density != 0.0 || known.modulus != 0.0);
+                self.line(match known.count() {
+                    0 => "$ Of the materials only the law is known:",
+                    _ => "$ Of the materials only law, density and modulus are known:",
+                });
                 self.line("$ put their cards from the original deck here before a calculation.");
             }
             written.push(*id);
@@ -169,8 +226,8 @@ impl Writer<'_> {
         }
     }
 
-    fn nodes(&mut self, model: &Model) -> Result<(), Cancelled> {
-        self.line("*NODE");
+    fn nodes(&mut self, model: &Model, keyword: &str) -> Result<(), Cancelled> {
+        self.line(keyword);
         let rows = model.nodes.ids().iter().zip(model.nodes.positions());
         for (row, (&id, position)) in rows.enumerate() {
             self.pause(row)?;

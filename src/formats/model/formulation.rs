@@ -12,8 +12,8 @@ pub struct ShellFormulation {
     pub elform: i64,
     /// Layers through the thickness, `NIP`; 2 where the card names none.
     pub n_layers: u32,
-    /// A rule of the user's (`QR/IRID` below 0), whose places the deck holds elsewhere.
-    pub has_own_rule: bool,
+    /// Number of a rule of the user's (`QR/IRID` below 0), whose places the deck holds elsewhere.
+    pub own_rule: Option<u64>,
     /// Equally spaced layers (`QR/IRID` 1) instead of those of `*CONTROL_SHELL`.
     pub is_trapezoidal: bool,
 }
@@ -23,7 +23,7 @@ impl Default for ShellFormulation {
         Self {
             elform: 0,
             n_layers: LAYERS_BY_DEFAULT,
-            has_own_rule: false,
+            own_rule: None,
             is_trapezoidal: false,
         }
     }
@@ -40,7 +40,7 @@ impl ShellFormulation {
             } else {
                 LAYERS_BY_DEFAULT
             },
-            has_own_rule: quadrature < 0.0,
+            own_rule: (quadrature < 0.0).then_some(-quadrature as u64),
             is_trapezoidal: quadrature == 1.0,
         }
     }
@@ -66,6 +66,14 @@ pub struct ShellControl {
 }
 
 impl Model {
+    /// Whether stresses of a part are read in element axes (`LISPSID`). A set that the deck does not define may hold
+    /// any part.
+    pub fn is_in_element_axes(&self, part: u64) -> bool {
+        let set = self.shell_control.element_axes_set;
+        let named = self.sets.parts.get(&set);
+        set != 0 && named.is_none_or(|named| named.ids.contains(&part))
+    }
+
     /// The formulation of a part's shells, whose layers are its plies where it has some; `None` if its section
     /// is not in the deck. O(sections).
     pub fn shell_formulation(&self, part: u32) -> Option<ShellFormulation> {
@@ -96,7 +104,7 @@ mod tests {
         assert_eq!(ShellFormulation::new(16, 0.0, 0.0).n_layers, 2);
         assert_eq!(ShellFormulation::new(2, -3.0, 0.0).n_layers, 2);
         assert_eq!(ShellFormulation::new(2, 1e9, -7.0).n_layers, 2);
-        assert!(ShellFormulation::new(2, 3.0, -7.0).has_own_rule);
+        assert_eq!(ShellFormulation::new(2, 3.0, -7.0).own_rule, Some(7));
         assert!(ShellFormulation::new(2, 3.0, 1.0).is_trapezoidal);
         assert!(!ShellFormulation::new(2, 3.0, 0.0).is_trapezoidal);
         assert_eq!(ShellFormulation::new(16, 5.0, 0.0).n_plane(), 4);

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::convert::element_index;
 use super::record::{DistributionRecord, PairRecord, pair_of};
 use super::{MapRun, PipelineError, ShownValue};
-use crate::formats::keyword::write::{WriteOptions, write};
+use crate::formats::keyword::write::write_nodes;
 use crate::formats::{self, Disk, Memory, Model, ReadOptions, Replaced};
 use crate::mapping::{Layered, PLASTIC_STRAIN, distribution};
 use crate::monitor::{Cancelled, Monitor};
@@ -110,12 +110,7 @@ pub(super) fn read_beside_nodes(
     bytes: &[u8],
     monitor: &Monitor,
 ) -> Result<Model, PipelineError> {
-    let nodes = Model {
-        nodes: crash.nodes.clone(),
-        ..Model::default()
-    };
-    let mut deck = write(&nodes, &WriteOptions::default(), monitor)?;
-    deck.truncate(deck.len() - b"*END\n".len());
+    let mut deck = write_nodes(crash, crash.layout, monitor)?;
     let mut memory = Memory::new();
     for (number, other) in others.iter().enumerate() {
         let name = format!("other_{number}.k");

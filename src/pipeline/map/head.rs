@@ -2,7 +2,6 @@
 
 use super::PlacedPart;
 use super::output::MapWriter;
-use crate::formats::keyword::card::Layout;
 use crate::mapping::Status;
 use crate::pipeline::load::LoadedPart;
 use crate::report::build_id;
@@ -60,14 +59,5 @@ impl MapWriter<'_> {
         }
         head.push_str(&format!("$ {}\n", build_id()));
         head
-    }
-}
-
-/// The first line of a deck with fields of a width.
-pub(super) fn keyword_line(layout: Layout) -> String {
-    match layout {
-        Layout::Standard => "*KEYWORD\n".to_owned(),
-        Layout::I10 => "*KEYWORD I10=Y\n".to_owned(),
-        Layout::Long => "*KEYWORD LONG=Y\n".to_owned(),
     }
 }

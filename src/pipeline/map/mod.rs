@@ -328,7 +328,7 @@ impl Layers<'_> {
         let n_layers = match (self.recipe.n_layers, section) {
             (Some(n), _) => n,
             (None, _) if plies.is_some() => plies.map_or(0, <[f64]>::len),
-            (None, Some(section)) if !section.has_own_rule => section.n_layers as usize,
+            (None, Some(section)) if section.own_rule.is_none() => section.n_layers as usize,
             (None, _) if !needs_layers => 1,
             (None, Some(_)) => return Err(PipelineError::OwnLayerRule { part: id }),
             (None, None) => return Err(PipelineError::UnknownLayers { part: id }),

@@ -204,10 +204,11 @@ pub(super) fn copies_without_states(
     Ok(copies)
 }
 
-/// `mapped.k` and `car.k` → `mapped_car.k`, then `mapped_2_car.k`.
+/// `mapped.k` and `car.k` → `mapped_car.k`, then `mapped_2_car.k`. The copy is not packed.
 fn copy_path(beside: &Path, file: &Path, n: usize) -> PathBuf {
     let stem = beside.file_stem().unwrap_or_default().to_string_lossy();
     let name = file_name(file);
+    let name = name.trim_end_matches(".gz");
     beside.with_file_name(match n {
         1 => format!("{stem}_{name}"),
         n => format!("{stem}_{n}_{name}"),

@@ -3,7 +3,6 @@
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use super::head::keyword_line;
 use super::includes::{include_copies, lost_includes};
 use super::old_states::{LeftOut, NewStates, copies_without_states};
 use super::{DefaultThickness, MapRun, PipelineError};
@@ -14,6 +13,7 @@ use crate::formats::keyword::exchange::{
 };
 use crate::formats::keyword::source_file::SourceFile;
 use crate::formats::keyword::state_cards::{Pieces, ShellState, StateFormat, write_states};
+use crate::formats::keyword::write::keyword_line;
 use crate::formats::model::{IncludedAs, ReadFile};
 use crate::geometry::chunks::for_chunks;
 use crate::monitor::{Cancelled, Monitor};
@@ -428,7 +428,7 @@ impl MapWriter<'_> {
         path: &Path,
     ) -> Result<Vec<MapFile>, PipelineError> {
         let layout = decks.first().map_or(self.layout(), |(_, deck)| deck.layout);
-        let mut states = keyword_line(layout).into_bytes();
+        let mut states = keyword_line(layout).as_bytes().to_vec();
         states.extend_from_slice(head.as_bytes());
         let beside = elements_path(path);
         if !self.thickness.is_empty() {
@@ -463,7 +463,7 @@ impl MapWriter<'_> {
 
     fn elements(&self, head: &str, decks: &[(&ReadFile, ExchangedDeck)]) -> Vec<u8> {
         let layout = decks.first().map_or(self.layout(), |(_, deck)| deck.layout);
-        let mut text = keyword_line(layout).into_bytes();
+        let mut text = keyword_line(layout).as_bytes().to_vec();
         text.extend_from_slice(head.as_bytes());
         for (_, deck) in decks {
             text.extend_from_slice(&deck.elements);

@@ -41,21 +41,12 @@ pub fn check_shells<'a>(
 /// `*CONTROL_SHELL`): stresses are mapped and written in global axes. `parts` are those in use.
 pub(super) fn check_axes(part: &LoadedPart, parts: &[u32]) -> Result<(), PipelineError> {
     let model = &part.model;
-    let set = model.shell_control.element_axes_set;
-    if set == 0 {
-        return Ok(());
-    }
-    let is_named = |id: u64| match model.sets.parts.get(&set) {
-        Some(named) => named.ids.contains(&id),
-        // What is not defined may hold any part.
-        None => true,
-    };
     let mut ids = parts.iter().map(|&index| model.parts[index as usize].id);
-    match ids.find(|&id| is_named(id)) {
+    match ids.find(|&id| model.is_in_element_axes(id)) {
         Some(id) => Err(PipelineError::ElementAxes {
             part: id,
             name: part.file_name(),
-            set,
+            set: model.shell_control.element_axes_set,
         }),
         None => Ok(()),
     }

@@ -1,9 +1,9 @@
 //! The elements that are not wholly mapped, as one set for each status.
 
 use super::MapRun;
-use super::head::keyword_line;
 use crate::formats::Model;
 use crate::formats::keyword::card::Layout;
+use crate::formats::keyword::write::keyword_line;
 use crate::mapping::Status;
 use crate::monitor::{Cancelled, Monitor};
 
@@ -23,7 +23,7 @@ pub fn unmapped_sets(run: &MapRun, model: &Model, monitor: &Monitor) -> Result<S
         model.layout
     };
     let width = layout.width(10);
-    let mut text = keyword_line(layout);
+    let mut text = keyword_line(layout).to_owned();
     let mut set = first_set;
     for status in Status::ALL.into_iter().filter(|s| *s != Status::Mapped) {
         monitor.check()?;

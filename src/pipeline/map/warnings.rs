@@ -46,7 +46,10 @@ pub(super) fn warnings(
     let mut warnings = mapped_by_solver(crash);
     warnings.extend(unread_line(crash));
     warnings.extend(moved_nodes(crash));
+    warnings.extend(nodes_off(crash));
     for placed in stamped {
+        warnings.extend(nodes_off(placed.part));
+        warnings.extend(scaled_pose(placed));
         warnings.extend(same_parts_line(PerRole::new(crash, placed.part)));
         warnings.extend(file_lines(placed.part, &run.recipe.options));
     }
@@ -281,6 +284,29 @@ fn moved_nodes(part: &LoadedPart) -> Option<String> {
         )
     };
     told_of(part, |kind| kind == DiagnosticKind::DuplicateNode, what)
+}
+
+/// Says that nodes lie off the mid-surface, which their elements are taken to lie in.
+fn nodes_off(part: &LoadedPart) -> Option<String> {
+    let what = |_| "nodes lie off the mid-surface".to_owned();
+    told_of(part, |kind| kind == DiagnosticKind::OffMidSurface, what)
+}
+
+/// Says that a pose with a scale changes no thickness.
+fn scaled_pose(placed: &PlacedPart<'_>) -> Option<String> {
+    let scale = placed.crash_from_stamped.scale;
+    let is_rounding = (scale - 1.0).abs() <= 1e-6;
+    let unit = guess_unit(scale).map_or_else(String::new, |unit| {
+        let factor = exact(unit.factor() * placed.part.settings.length_factor);
+        format!("; --stamped-length-factor {factor} converts the file with its thicknesses instead")
+    });
+    (!is_rounding).then(|| {
+        format!(
+            "{}: the pose scales the part by {}, and no thickness{unit}",
+            placed.part.file_name(),
+            exact(scale)
+        )
+    })
 }
 
 /// Says which results are taken though they may not be meant so.

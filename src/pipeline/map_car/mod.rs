@@ -22,10 +22,10 @@ use super::names::file_name;
 use super::units::PairUnits;
 use super::write_file::{write_file, write_file_unless_cancelled};
 use crate::assess::Verdict;
+use crate::formats::keyword::rename::name_lines;
 use crate::geometry::Similarity;
 use crate::mapping::Status;
 use crate::monitor::Monitor;
-use crate::report::cards::name_lines;
 use crate::report::html::CarReport;
 use crate::report::{DIRECTION, build_id};
 use crate::role::PerRole;
@@ -343,7 +343,8 @@ fn master(record: &CarRecord, crash: &str, included: &[String]) -> String {
         text.push_str(&format!("$ {}\n", copy.text()));
     }
     for name in included {
-        text.push_str(&format!("*INCLUDE\n{}\n", name_lines(name).join("\n")));
+        let lines = name_lines(name).unwrap_or_else(|| vec![name.clone()]);
+        text.push_str(&format!("*INCLUDE\n{}\n", lines.join("\n")));
     }
     text.push_str("*END\n");
     text

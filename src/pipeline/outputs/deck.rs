@@ -132,6 +132,19 @@ pub fn left_out(part: &LoadedPart) -> Option<String> {
     if !lacks.is_empty() {
         lacks.push("which have the sum of their thicknesses".to_owned());
     }
+    let has_own_rule = |part: u32| {
+        let formulation = model.shell_formulation(part);
+        formulation.is_some_and(|formulation| formulation.own_rule.is_some())
+    };
+    let n_rules = (0..model.parts.len() as u32)
+        .filter(|part| has_own_rule(*part))
+        .count();
+    if n_rules > 0 {
+        lacks.push(format!(
+            "the integration rules of {}",
+            counted(n_rules, "part")
+        ));
+    }
     let n_offset = model.offset_shells.len();
     if n_offset > 0 {
         lacks.push(format!("the offset of {}", counted(n_offset, "shell")));

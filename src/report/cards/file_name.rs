@@ -1,9 +1,7 @@
 //! Names of files as cards hold them.
 
 use super::CardError;
-
-/// Most columns of a file name on cards.
-const MAX_NAME: usize = 236;
+use crate::formats::keyword::rename::name_lines;
 
 /// What keeps a deck from including a file of this name, in words after "its name"; `None` if
 /// nothing does. A line of a deck that begins with `$` is a comment and with `*` a keyword, and a
@@ -23,8 +21,8 @@ pub fn file_name_fault(name: &str) -> Option<&'static str> {
         Some("begins or ends with a blank")
     } else if name.ends_with(" +") {
         Some("ends with \" +\", which continues it in the next line")
-    } else if name.chars().count() > MAX_NAME {
-        Some("has more than 236 characters")
+    } else if name_lines(name).is_none() {
+        Some("has no room in three lines of 80 columns, which hold 236 characters")
     } else {
         None
     }
@@ -39,18 +37,4 @@ pub fn check_file_name(name: &str) -> Result<(), CardError> {
             fault,
         }),
     }
-}
-
-/// The lines of a deck that a file name takes, of at most 80 columns.
-pub fn name_lines(name: &str) -> Vec<String> {
-    let characters: Vec<char> = name.chars().collect();
-    let (mut rest, mut lines) = (&characters[..], Vec::new());
-    // The last line may be full; the others need two columns for the sign that they go on.
-    while rest.len() > 80 {
-        let (line, after) = rest.split_at(78);
-        lines.push(line.iter().collect::<String>() + " +");
-        rest = after;
-    }
-    lines.push(rest.iter().collect());
-    lines
 }

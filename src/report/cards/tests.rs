@@ -213,3 +213,17 @@ fn every_symmetry_of_other_peoples_cards() {
     let moved = deck("4", "0,0,5\n1,0,5,0,1,5");
     assert!((moved - Point3::new(11.0, 2.0, 7.0)).norm() < 1e-12);
 }
+
+#[test]
+fn a_search_radius_is_rounded_up_by_a_thousandth_in_any_unit() {
+    for (radius, rounded) in [
+        (5.3, 5.3),
+        (5.300_01, 5.301),
+        (0.005_300_1, 0.005_301),
+        (20.0, 20.0),
+        (123.456_7, 123.457),
+        (2e-4, 0.001),
+    ] {
+        assert_eq!(rounded_radius(radius), rounded);
+    }
+}

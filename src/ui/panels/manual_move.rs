@@ -77,23 +77,25 @@ fn tighten(ui: &mut Ui) {
 fn steps_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let frame = state.moving.axes;
     let length_unit = state.lengths().suffix();
+    let decimals = length_decimals(state);
+    let millimetre = 10_f64.powi(LENGTH_DECIMALS as i32 - decimals as i32);
     for (name, unit, is_turn) in [("Move", length_unit, false), ("Rotate", "°", true)] {
-        let id = egui::Id::unique(("typed move", name));
-        let mut value: f64 =
-            ui.data(|data| data.get_temp(id))
-                .unwrap_or(if is_turn { 15.0 } else { 10.0 });
+        let id = egui::Id::unique(("typed move", name, decimals));
+        let usual = if is_turn { 15.0 } else { 10.0 * millimetre };
+        let mut value: f64 = ui.data(|data| data.get_temp(id)).unwrap_or(usual);
         form_row(ui, name, LABEL, |ui| {
             tighten(ui);
             let (takes, speed) = if is_turn {
                 (Takes::number(name, unit, MOVES), 1.0)
             } else {
-                (Takes::length(name, state.lengths(), MOVES), 0.5)
+                let takes = Takes::length(name, state.lengths(), MOVES);
+                (takes, 0.5 * millimetre)
             };
             let before = value;
             let field = takes
                 .field(&mut value)
                 .speed(speed)
-                .max_decimals(6)
+                .max_decimals(3 + decimals)
                 .min_size(vec2(68.0, ROW));
             let spoken = format!("{name} by");
             told_field(ui, &spoken, before, field, |text| takes.read(text));
@@ -159,17 +161,19 @@ fn position_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let lengths = state.lengths();
     let unit = lengths.suffix();
     axes_row_ui(ui, unit);
+    let decimals = length_decimals(state);
     for (row, values) in [(CENTER, at), (CENTER_MOVE, moved)] {
         if let Some((axis, by, value)) = fields_ui(
             ui,
             &row,
             values,
             |name| Takes::length(name, lengths, MOVES),
-            unit,
+            (unit, decimals),
         ) {
             let mut crash_from_stamped: Similarity = pose;
             crash_from_stamped.translation[axis.index()] += by;
-            let name = format!("{} {} {}{unit}", row.step, axis.letter(), fixed(value, 3));
+            let value = fixed(value, decimals);
+            let name = format!("{} {} {value}{unit}", row.step, axis.letter());
             commands.push(set_pose(crash_from_stamped, name));
         }
     }
@@ -182,7 +186,7 @@ fn position_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         &ROTATION,
         turns,
         |name| Takes::number(name, "°", MOVES),
-        "°",
+        ("°", LENGTH_DECIMALS),
     ) {
         let mut turns = turns;
         turns[axis.index()] += by;
@@ -261,8 +265,9 @@ fn fields_ui(
     row: &Three,
     values: [f64; 3],
     takes: impl Fn(&str) -> Takes<'_>,
-    unit: &str,
+    (unit, most_decimals): (&str, usize),
 ) -> Option<(Axis, f64, f64)> {
+    let speed = 500.0 * 0.1_f64.powi(most_decimals as i32);
     let mut typed = None;
     form_row(ui, row.label, LABEL, |ui| {
         tighten(ui);
@@ -273,20 +278,21 @@ fn fields_ui(
         for axis in Axis::ALL {
             // What would be shown as −0.000 is nothing.
             let before = values[axis.index()];
-            let before = if before.abs() < 5e-4 { 0.0 } else { before };
+            let is_nothing = rounded(before, most_decimals) == 0.0;
+            let before = if is_nothing { 0.0 } else { before };
             let mut value = before;
             // Three have no room for their unit.
             let name = format!("{} {}", row.spoken, axis.letter());
             let takes = takes(&name);
-            let decimals = fitting_decimals(ui, before, width - 2.0 * PADDING);
+            let decimals = fitting_decimals(ui, before, width - 2.0 * PADDING, most_decimals);
             let field = takes
                 .bare_field(&mut value)
                 .fixed_decimals(decimals)
-                .speed(0.5)
+                .speed(speed)
                 .min_size(vec2(width, ROW));
             let response = told_field(ui, &name, before, field, |text| takes.read(text));
             // A field that was only looked into holds the value as it is shown.
-            let is_other = fixed(value, decimals) != fixed(before, decimals);
+            let is_other = value != rounded(before, decimals);
             if response.changed() && is_other {
                 typed = Some((axis, value - before, value));
             }
@@ -297,8 +303,31 @@ fn fields_ui(
     typed
 }
 
-/// The decimals, at most three, with which a number fits its field.
-fn fitting_decimals(ui: &Ui, value: f64, room: f32) -> usize {
+/// Decimals of lengths in millimetres or inches, and of angles.
+const LENGTH_DECIMALS: usize = 3;
+/// Lengths in metres, in which no part is as large as this, are told as finely with so many.
+const METRES: f64 = 10.0;
+const METRE_DECIMALS: usize = 6;
+
+/// Decimals that tell lengths of the stamped part as finely, whatever unit they are in.
+fn length_decimals(state: &AppState) -> usize {
+    let part = state.document.part(Role::Stamped);
+    match part.map(|part| part.bounds().diagonal()) {
+        Some(size) if size < METRES => METRE_DECIMALS,
+        _ => LENGTH_DECIMALS,
+    }
+}
+
+/// A number as it is shown with so many decimals.
+fn rounded(value: f64, decimals: usize) -> f64 {
+    fixed(value, decimals)
+        .replace('−', "-")
+        .parse()
+        .unwrap_or(value)
+}
+
+/// The decimals, at most so many, with which a number fits its field.
+fn fitting_decimals(ui: &Ui, value: f64, room: f32, most: usize) -> usize {
     let font = TextStyle::Small.resolve(ui.style());
     let fits = |decimals: &usize| {
         let text = fixed(value, *decimals);
@@ -307,7 +336,7 @@ fn fitting_decimals(ui: &Ui, value: f64, room: f32) -> usize {
             .layout_no_wrap(text, font.clone(), Color32::WHITE);
         laid.size().x <= room
     };
-    (0..=3).rev().find(fits).unwrap_or(0)
+    (0..=most).rev().find(fits).unwrap_or(0)
 }
 
 /// A field that takes any matrix and says what it understood.

@@ -291,8 +291,13 @@ fn over_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             .map_or(1.0, |p| p.bounds().diagonal());
         slider_room(ui);
         let slider = egui::Slider::new(&mut display.separation, 0.0..=0.25 * size);
-        ui.add(slider.max_decimals(1).suffix(state.document.unit_suffix()))
-            .on_hover_text("Draws the stamped part apart from where it is; the matrix stays");
+        let decimals = (4.0 - size.log10().floor()).clamp(1.0, 9.0) as usize;
+        ui.add(
+            slider
+                .max_decimals(decimals)
+                .suffix(state.document.unit_suffix()),
+        )
+        .on_hover_text("Draws the stamped part apart from where it is; the matrix stays");
     });
     ui.horizontal(|ui| {
         for action in [Action::ToggleSeeThrough, Action::ToggleWipe] {

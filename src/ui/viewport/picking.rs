@@ -117,11 +117,9 @@ fn hole_center(
     hit: Option<&Hit>,
 ) -> Option<(Role, Candidate)> {
     let picker = PointPicker(frame);
-    let near = Role::ALL.into_iter().filter_map(|role| {
-        let holes = picker.holes(role)?;
-        let holes = holes.filter(|hole| !frame.picture.is_cut_away(&hole.point));
-        Some((role, picker.nearest(holes, pos, hit)?))
-    });
+    let near = Role::ALL
+        .into_iter()
+        .filter_map(|role| Some((role, picker.nearest(picker.holes(role)?, pos, hit)?)));
     let nearest = near.min_by(|(_, a), (_, b)| a.off.total_cmp(&b.off));
     nearest.map(|(role, near)| (role, near.candidate))
 }
@@ -219,14 +217,15 @@ impl PointPicker<'_> {
         self.0.view.camera.pixel_size(screen, point)
     }
 
-    /// The nearest of these within reach that is not behind what the pointer meets.
+    /// The nearest of these within reach that is neither cut away nor behind what the pointer meets.
     fn nearest(
         &self,
         landmarks: impl Iterator<Item = Landmark>,
         pos: Pos2,
         hit: Option<&Hit>,
     ) -> Option<Near> {
-        let within = landmarks.filter_map(|landmark| {
+        let shown = landmarks.filter(|landmark| !self.0.picture.is_cut_away(&landmark.point));
+        let within = shown.filter_map(|landmark| {
             let Landmark {
                 point,
                 reach,

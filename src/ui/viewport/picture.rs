@@ -387,7 +387,7 @@ fn hit_layer(
                     id,
                 }),
                 further: layer.instance.further.clone(),
-                node: pose.apply(&node),
+                node: pose.apply(&node) + drawable.offset,
                 node_id,
                 value,
             };

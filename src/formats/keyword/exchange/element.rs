@@ -186,8 +186,9 @@ fn replaced_thickness(card: &Card<'_>, line: &[u8], new: &[f64; 4], layout: Layo
             text.push(b',');
             text.extend_from_slice(rest);
         }
-    } else if line.len() > 4 * width {
-        text.extend_from_slice(&line[4 * width..]);
+    } else if let Some(rest) = card.line().get(4 * width..) {
+        // Tabs are columns there.
+        text.extend_from_slice(rest);
     }
     text
 }
@@ -210,7 +211,9 @@ impl Keyword {
             plain.clone()
         } else {
             // Behind `*ELEMENT_SHELL`, because the thickness card follows the element's first.
-            let stem = "*ELEMENT_SHELL".len().min(plain.len());
+            // Blanks may stand behind the star.
+            let blanks = plain.len() - plain[1..].trim_start().len() - 1;
+            let stem = ("*ELEMENT_SHELL".len() + blanks).min(plain.len());
             format!("{}_THICKNESS{}", &plain[..stem], &plain[stem..])
         };
         Self {

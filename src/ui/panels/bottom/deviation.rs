@@ -15,8 +15,7 @@ use crate::report::distances::{COMPARED_P95, COMPARED_RMS};
 use crate::role::Role;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{
-    Look, action_button, caption, chip, icon_button, nothing_yet, percent, role_mark, signed,
-    text_field,
+    Look, action_button, caption, chip, icon_button, nothing_yet, percent, role_mark, text_field,
 };
 
 /// Height of a row.
@@ -339,9 +338,7 @@ fn label_ui(
 ) {
     ui.horizontal(|ui| {
         role_mark(ui, role);
-        let value = state
-            .label_value(label)
-            .map_or_else(|| "–".to_owned(), signed);
+        let value = state.label_text(label);
         let node = label.node.map_or_else(
             || format!("vertex {}", label.vertex),
             |n| format!("node {n}"),

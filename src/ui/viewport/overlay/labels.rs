@@ -9,7 +9,6 @@ use egui::{
 
 use super::{MARGIN, Overlay, legend};
 use crate::app::{BottomTab, Command, InspectCommand, Label, ViewCommand};
-use crate::assess::deviation::OverlapClass;
 use crate::role::Role;
 use crate::ui::focus::is_ringed;
 use crate::ui::theme::color;
@@ -125,11 +124,7 @@ fn taken(ui: &Ui, over: &Overlay<'_>) -> Vec<Rect> {
 /// Value, and below it the name or the node.
 fn texts(over: &Overlay<'_>, placed: &Placed<'_>) -> [String; 2] {
     let label = placed.label;
-    let value = match over.frame.state.label_value(label) {
-        Some(value) => over.frame.state.lengths().signed_of(value),
-        None if over.frame.state.comparison().is_none() => "–".to_owned(),
-        None => OverlapClass::OnlyHere.label().to_owned(),
-    };
+    let value = over.frame.state.label_text(label);
     let node = label.node.map(|node| format!("node {node}"));
     let below = match (label.name.as_str(), node) {
         ("", Some(node)) => node,
