@@ -30,37 +30,11 @@ impl<const N: usize> Default for NormalEquations<N> {
 impl<const N: usize> NormalEquations<N> {
     /// Those of many rows, each with a value and a weight. O(rows · N²).
     pub(super) fn of(rows: &[SVector<f64, N>], values: &[f64], weights: &[f64]) -> Self {
-        const AT_ONCE: usize = 4;
-        let weighted = rows.iter().zip(weights).map(|(row, weight)| row * *weight);
-        let weighted: Vec<SVector<f64, N>> = weighted.collect();
         let mut sum = Self::default();
-        for (row, value) in weighted.iter().zip(values) {
-            sum.right += row * *value;
+        for ((row, value), weight) in rows.iter().zip(values).zip(weights) {
+            sum.add(row, *value, *weight);
         }
-        let (fours, rest) = rows.as_chunks::<AT_ONCE>();
-        let (weighted_fours, weighted_rest) = weighted.as_chunks::<AT_ONCE>();
-        for (rows, weighted) in fours.iter().zip(weighted_fours) {
-            sum.add_lower(rows, weighted);
-        }
-        for (row, weighted) in rest.iter().zip(weighted_rest) {
-            sum.add_lower(&[*row], &[*weighted]);
-        }
-        sum.matrix.fill_upper_triangle_with_lower_triangle();
         sum
-    }
-
-    /// Adds the products of a few rows to the lower half of the matrix: what most of the time goes into.
-    fn add_lower<const K: usize>(
-        &mut self,
-        rows: &[SVector<f64, N>; K],
-        weighted: &[SVector<f64, N>; K],
-    ) {
-        for column in 0..N {
-            for row in column..N {
-                let products = (0..K).map(|k| rows[k][row] * weighted[k][column]);
-                self.matrix[(row, column)] += products.sum::<f64>();
-            }
-        }
     }
 
     /// Adds one equation.

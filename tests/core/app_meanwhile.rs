@@ -304,7 +304,7 @@ fn reducing_again_after_a_reload_is_an_undo_step() {
         roles: PerRole::new(true, false),
         max_triangles: 60,
     };
-    window.apply(reduce.clone());
+    window.apply(reduce);
     window.apply(FileCommand::Reload(Role::Crash));
     let part = window.part(Role::Crash);
     assert!(part.wanted_level.is_some());

@@ -152,29 +152,38 @@ fn a_separation_does_not_move_the_nodes_that_are_measured() {
     let separation = window.state().state().view.display.separation;
     assert!(separation > 1.0, "{separation}");
     let mut n_stamped = 0;
-    for i in 0..12 {
-        let at = [
-            f32::from(i as u8 % 4) * 37.0 - 60.0,
-            f32::from(i as u8 / 4) * 29.0 - 30.0,
-        ];
-        window.key_press(egui::Key::I);
-        window.run_steps(2);
-        click_in(&mut window, Role::Crash, at.into());
-        let state = window.state().state();
-        let Some(&(role, point)) = state.distance_ends().first() else {
-            continue;
-        };
-        let part = state.document.part(role).expect("it was clicked");
-        let hit = part
-            .loaded
-            .surface
-            .bvh()
-            .closest(&point, f64::INFINITY, None, None);
-        let off = hit.expect("a surface").distance_sq.sqrt();
-        assert!(off < 1e-3, "{role:?} at {at:?}: {off} of {separation}");
-        n_stamped += usize::from(role == Role::Stamped);
-        window.key_press(egui::Key::Escape);
-        window.run_steps(2);
+    // From either side, so that each part is once in front.
+    let sides = [egui::Modifiers::NONE, egui::Modifiers::COMMAND];
+    let views = [egui::Key::Num1, egui::Key::Num3, egui::Key::Num7];
+    for (side, view) in sides.iter().flat_map(|side| views.map(|view| (side, view))) {
+        window.key_press_modifiers(*side, view);
+        window.run_steps(30);
+        for off in [[-60.0, -20.0], [-20.0, 15.0], [25.0, -15.0], [70.0, 20.0]] {
+            window.key_press(egui::Key::I);
+            window.run_steps(2);
+            click_in(&mut window, Role::Crash, off.into());
+            n_stamped += usize::from(is_on_stamped(&window));
+            window.key_press(egui::Key::Escape);
+            window.run_steps(2);
+        }
     }
     assert!(n_stamped > 2, "{n_stamped}");
+}
+
+/// Whether a node or a place of the stamped part was clicked, which has to lie on it.
+fn is_on_stamped(window: &Harness<'static, Shell>) -> bool {
+    let state = window.state().state();
+    let Some(&(Role::Stamped, point)) = state.distance_ends().first() else {
+        return false;
+    };
+    let part = state.document.part(Role::Stamped).expect("it was clicked");
+    let holes = &part.facts.landmarks.holes;
+    if holes.iter().any(|hole| (hole.center - point).norm() < 1e-6) {
+        return false;
+    }
+    let tree = part.loaded.surface.bvh();
+    let hit = tree.closest(&point, f64::INFINITY, None, None);
+    let off = hit.expect("a surface").distance_sq.sqrt();
+    assert!(off < 1e-3, "{point}: {off}");
+    true
 }
