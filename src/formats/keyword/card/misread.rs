@@ -59,25 +59,21 @@ impl Card<'_> {
         misread: Option<Misread>,
         what: &str,
     ) -> Diagnostic {
-        let line = || self.line_text();
-        match misread {
-            Some(Misread::Keyword) => self.diagnose_keyword(),
+        let (question, expected) = match misread {
+            Some(Misread::Keyword) => return self.diagnose_keyword(),
             Some(Misread::DecimalComma) => {
-                let message = format!("{what} cannot be read: a decimal comma?");
-                Diagnostic::new(error.kind, message)
-                    .at(self.position(0))
-                    .found(line())
-                    .expected("decimal points; commas separate fields")
+                ("a decimal comma?", "decimal points; commas separate fields")
             }
-            Some(Misread::Blanks) => {
-                let message = format!("{what} cannot be read: blanks between its values?");
-                Diagnostic::new(error.kind, message)
-                    .at(self.position(0))
-                    .found(line())
-                    .expected("fields of fixed columns, or commas between the values")
-            }
-            None => self.diagnose(error, what),
-        }
+            Some(Misread::Blanks) => (
+                "blanks between its values?",
+                "fields of fixed columns, or commas between the values",
+            ),
+            None => return self.diagnose(error, what),
+        };
+        Diagnostic::new(error.kind, format!("{what} cannot be read: {question}"))
+            .at(self.position(0))
+            .found(self.line_text())
+            .expected(expected)
     }
 
     /// A diagnostic about a block whose cards, of which this is the first, are those of `layout`.
