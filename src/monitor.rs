@@ -114,28 +114,6 @@ impl Monitor {
     }
 }
 
-/// A large value that is given back to the system on another thread, so that the work that had it, and a cancel of
-/// it, need not wait for that.
-pub(crate) struct FreedAside<T: Send + 'static>(Option<T>);
-
-impl<T: Send + 'static> FreedAside<T> {
-    pub(crate) fn new(value: T) -> Self {
-        Self(Some(value))
-    }
-
-    pub(crate) fn value(&self) -> &T {
-        self.0.as_ref().expect("only taken out when dropped")
-    }
-}
-
-impl<T: Send + 'static> Drop for FreedAside<T> {
-    fn drop(&mut self) {
-        if let Some(value) = self.0.take() {
-            rayon::spawn(move || drop(value));
-        }
-    }
-}
-
 impl std::fmt::Debug for Monitor {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Monitor")

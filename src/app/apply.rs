@@ -117,8 +117,7 @@ impl AppState {
     fn apply_view(&mut self, command: ViewCommand) {
         let is_section = matches!(command, ViewCommand::SetFreeWindow(FreeWindow::Section));
         if is_section && !self.inspect.section.is_on {
-            let section = self.inspect.section;
-            self.inspect.section = section.toggled(|| self.default_section_plane());
+            self.inspect.section = self.toggled_section();
         }
         if matches!(
             command,

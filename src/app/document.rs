@@ -7,7 +7,7 @@ use super::{Label, Mapping, PointPairs, Shared};
 use crate::assess::Verdict;
 use crate::formats::PartSummary;
 use crate::formats::model::ReadFile;
-use crate::geometry::{Aabb, Similarity, TriMesh};
+use crate::geometry::{Aabb, Landmarks, Similarity, TriMesh};
 use crate::jobs::{MeasuredLevel, PartFacts, PartSource, Stamp};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::match_parts::{MatchRecipe, MatchRun};
@@ -125,6 +125,13 @@ impl Part {
     /// True if this part of the deck is shown.
     pub fn is_visible(&self, id: u64) -> bool {
         !self.hidden.contains(&id)
+    }
+
+    /// The holes and corners of what is shown of it.
+    pub fn shown_landmarks(&self) -> impl Iterator<Item = &Landmarks> {
+        let all = self.facts.landmarks.iter();
+        all.filter(|(id, _)| self.is_visible(**id))
+            .map(|(_, of_part)| of_part)
     }
 
     /// True if this part of the deck is matched.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{Document, PictureChoice, PicturePlace};
+use super::{Kept, PictureChoice, PicturePlace};
 use crate::jobs::{JobKey, JobKind, ProjectFile, Stamp};
 use crate::pipeline::outputs::Output;
 use crate::pipeline::project::Project;
@@ -29,7 +29,7 @@ pub enum Effect {
     AskOtherMapping,
     /// Ask where to write the project, beginning there; answer with `ProjectCommand::Write`.
     AskSaveProject(PathBuf),
-    /// Write a project; answer with `ProjectCommand::Written` and the document.
+    /// Write a project; answer with `ProjectCommand::Written` and what was kept.
     WriteProject {
         /// File the project is written to.
         path: PathBuf,
@@ -37,8 +37,8 @@ pub enum Effect {
         replaces: Option<u64>,
         /// Content of the project file.
         project: Box<Project>,
-        /// The state that it holds.
-        document: Box<Document>,
+        /// The work that it holds.
+        kept: Box<Kept>,
     },
     /// Save the session in the user's folder in case of a crash.
     Autosave(Box<Project>),

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use super::{
-    AppState, BottomTab, Document, Effect, FreeWindow, NoticeLevel, Part, Section, Showing,
-    ShownGeometry,
+    AppState, BottomTab, Document, Effect, FreeWindow, LogStep, NoticeLevel, Part, Section,
+    Showing, ShownGeometry,
 };
 use crate::geometry::{Aabb, Point3};
 use crate::jobs::ProjectRequest;
@@ -45,6 +45,8 @@ pub(super) enum FollowUp {
         /// It lies where the same file had it before.
         is_in_place: bool,
     },
+    /// A part was closed.
+    PartClosed,
     /// A part took another selection or unit.
     PartReselected(Role),
     /// The part that was chosen to be matched at once is made.
@@ -63,6 +65,8 @@ pub(super) enum FollowUp {
         /// What came out, in a line.
         line: String,
     },
+    /// The stamped part was moved by hand.
+    MovedByHand,
     /// A further stamped file lies at a pose, and is seen there.
     FurtherPlaced,
     /// A mapping was taken over.
@@ -93,6 +97,14 @@ pub(super) enum FollowUp {
     Quit,
 }
 
+/// What is said of parts as they are, and of where they lie.
+const OF_PARTS: [LogStep; 4] = [
+    LogStep::Match,
+    LogStep::Result,
+    LogStep::Verdict,
+    LogStep::Map,
+];
+
 impl AppState {
     pub(super) fn follow(&mut self, follow_up: FollowUp) -> Vec<Effect> {
         match follow_up {
@@ -106,10 +118,13 @@ impl AppState {
                 if !is_in_place {
                     self.with_scene(|view, scene| view.fit_after_load(role, scene));
                 }
+                self.leave_empty_views();
                 self.go_on_from_load();
             }
+            FollowUp::PartClosed => self.leave_empty_views(),
             FollowUp::PartReselected(role) => {
-                self.with_scene(|view, scene| view.fit_after_load(role, scene));
+                self.withdraw_about(&OF_PARTS);
+                self.with_scene(|view, scene| view.fit_part(role, scene));
                 let (mut work, topics) = self.split();
                 return topics.reduce.reduce_again(&mut work, role);
             }
@@ -127,6 +142,7 @@ impl AppState {
                 level,
                 line,
             } => {
+                self.withdraw_about(&OF_PARTS);
                 self.tell_result(level, line);
                 if let Some(result) = &self.document.result {
                     self.reduce.keep_match_level(&self.document, &result.run);
@@ -134,20 +150,14 @@ impl AppState {
                 self.show_verdict();
                 self.follow_far_move(before);
             }
+            FollowUp::MovedByHand => self.view.stay(),
             FollowUp::FurtherPlaced => {
                 self.with_scene(|view, scene| view.keep_whole(Role::Stamped, scene));
             }
             FollowUp::SectionToggled => self.show_section(),
             FollowUp::DistanceBegun => self.pairs.tool = None,
             FollowUp::PairsBegun => self.inspect.distance = None,
-            FollowUp::Mapped => {
-                self.view.sections.arrange();
-                // Whoever looks at distances or at parts wants to see what came of the mapping.
-                if !self.is_mapping_shown() {
-                    self.view.display = self.with_map_picture(None);
-                }
-                self.view.tab = BottomTab::Mapping;
-            }
+            FollowUp::Mapped => self.see_mapped(),
             FollowUp::MappingCompared => {
                 self.view.display = self.with_other_result();
                 self.view.tab = BottomTab::Mapping;
@@ -165,6 +175,7 @@ impl AppState {
                 self.parts.forget_missing(&self.document);
                 self.parts.refresh_likeness(&self.document);
                 self.follow_step(&before);
+                self.end_move_over_of_one();
             }
             FollowUp::WriteProject(path, replaces) => {
                 return vec![self.write_project(path, replaces)];
@@ -200,14 +211,51 @@ impl AppState {
             path,
             replaces,
             project: Box::new(self.to_project(0)),
-            document: Box::new(self.document.clone()),
+            kept: Box::new(self.kept()),
         }
     }
 
     /// The cameras go with their parts, each of which lies where its own file has it now.
     fn see_swapped(&mut self) {
-        self.view.cameras.swap();
+        // One window for both has one camera.
+        if !self.view.is_moved_over {
+            self.view.cameras.swap();
+        }
         self.with_scene(|view, scene| view.fit_both(scene));
+    }
+
+    fn see_mapped(&mut self) {
+        self.withdraw_about(&[LogStep::Map]);
+        self.view.sections.arrange();
+        // Whoever looks at distances or at parts wants to see what came of the mapping.
+        if !self.is_mapping_shown() {
+            self.view.display = self.with_map_picture(None);
+        }
+        self.view.tab = BottomTab::Mapping;
+    }
+
+    /// What was said of these steps before this moment no longer holds.
+    fn withdraw_about(&mut self, steps: &[LogStep]) {
+        let now = self.log.now;
+        self.log.notices.withdraw_about(steps, now);
+    }
+
+    /// Other parts are there: ends what was said of those before, and leaves what shows nothing any more: both parts in
+    /// one window, and the tab of a mapping.
+    fn leave_empty_views(&mut self) {
+        self.withdraw_about(&OF_PARTS);
+        self.end_move_over_of_one();
+        if self.view.tab == BottomTab::Mapping && self.document.mapping.result.is_none() {
+            self.view.tab = BottomTab::Log;
+        }
+    }
+
+    /// Without both parts the one that is left has its own window again.
+    fn end_move_over_of_one(&mut self) {
+        let is_one = self.document.has_both_parts().is_err();
+        if is_one && self.view.is_moved_over {
+            self.with_scene(|view, scene| view.toggle_move_over(scene));
+        }
     }
 
     /// Two single parts need no choice, so the sections after loading come next; a deck of many
@@ -216,9 +264,15 @@ impl AppState {
         self.view.sections.arrange();
         let is_single = |part: &Part| part.facts.parts.len() <= 1;
         let is_plain = |both: PerRole<&Part>| is_single(both.crash) && is_single(both.stamped);
-        if self.document.both().is_some_and(is_plain) {
+        if let Some(both) = self.document.both() {
+            // The match comes next; before it parts may be chosen or reduced.
+            let before = if is_plain(both) {
+                Section::Reduce
+            } else {
+                Section::Load
+            };
             self.view.sections.touch(Section::Match);
-            self.view.sections.touch(Section::Reduce);
+            self.view.sections.touch(before);
         }
         // The result of the file as it was before: what is to be done about it is there.
         if self.document.result.is_some() && self.document.current_result().is_none() {
@@ -234,6 +288,7 @@ impl AppState {
         let showing = Showing {
             now: self.log.now,
             is_muted,
+            about: Some(LogStep::Result),
         };
         self.log.notices.push(level, line, showing);
     }

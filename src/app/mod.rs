@@ -76,7 +76,7 @@ pub use parts::{
     FileCommand, LikeWhat, Likeness, MoreAlike, PartCommand, PartRef, PartsState, UnitHint,
     UnitMemory, filter,
 };
-pub use project::{ProjectCommand, ProjectState};
+pub use project::{Kept, ProjectCommand, ProjectState};
 pub use reduce::{LevelResult, ReduceCommand, ReduceState};
 pub use settings::{MouseScheme, Settings, StartupOptions, Theme};
 pub use shared::Shared;

@@ -96,14 +96,15 @@ impl Work<'_> {
         took: Option<Duration>,
     ) {
         let text = without_error_number(&text.into());
-        self.notify(level, text.clone());
+        let showing = self.showing_of(level, Some(step));
+        self.log.notices.push(level, text.clone(), showing);
         self.log.push(level, step, role, text, took);
     }
 
     /// [`Work::log_at`] with a button for each of these actions.
     pub fn offer_at(&mut self, level: NoticeLevel, step: LogStep, text: &str, offers: &[Action]) {
         let text = without_error_number(text);
-        let showing = self.showing(level);
+        let showing = self.showing_of(level, Some(step));
         self.log.notices.offer(level, text.clone(), showing, offers);
         self.log.push(level, step, None, text, None);
     }
@@ -116,9 +117,14 @@ impl Work<'_> {
 
     /// A message of now, muted if the user muted its level.
     pub fn showing(&self, level: NoticeLevel) -> Showing {
+        self.showing_of(level, None)
+    }
+
+    fn showing_of(&self, level: NoticeLevel, about: Option<LogStep>) -> Showing {
         Showing {
             now: self.log.now,
             is_muted: self.settings.muted.contains(&level),
+            about,
         }
     }
 

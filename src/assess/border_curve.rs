@@ -165,8 +165,8 @@ pub(super) fn curves_of(surface: &Surface) -> Vec<BorderCurve> {
 }
 
 /// Median distance, within the sheet, of an outline's node from the middle between its neighbours; next to nothing
-/// along straight and smoothly curved outlines, whatever folds and corners they have. Holes count only where there is no
-/// outline: a small one of a few nodes steps aside though it is cut clean.
+/// along straight and smoothly curved outlines, whatever folds and corners they have. Holes count only where there is
+/// no outline: a small one of a few nodes steps aside though it is cut clean.
 pub(super) fn ragged(borders: &[BorderCurve], unit: f64) -> f64 {
     let mut steps = Vec::new();
     let has_outline = borders.iter().any(|border| !border.is_hole);

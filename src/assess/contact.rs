@@ -119,8 +119,8 @@ impl<'a> ContactSearch<'a> {
         self.at_scaled(pose, None)
     }
 
-    /// The same with the source under the pose scaled along axes. A place of the source is given where scaling takes it;
-    /// one of the target is given where it lies, with the gap that is measured after scaling is undone.
+    /// The same with the source under the pose scaled along axes. A place of the source is given where scaling takes
+    /// it; one of the target is given where it lies, with the gap that is measured after scaling is undone.
     pub(super) fn at_scaled(
         &mut self,
         pose: &Similarity,
@@ -140,8 +140,8 @@ impl<'a> ContactSearch<'a> {
     }
 
     /// The scale that would fit the source best to the places of the target that it meets under a pose, times that of
-    /// the pose; `None` where they do not meet. An offset of the sheets by at most `offset` is no scale: a tube is wider
-    /// at its outer skin. O(nodes · log triangles).
+    /// the pose; `None` where they do not meet. An offset of the sheets by at most `offset` is no scale: a tube is
+    /// wider at its outer skin. O(nodes · log triangles).
     pub(crate) fn best_scale(&mut self, pose: &Similarity, offset: f64) -> Option<f64> {
         let met = self.at(pose)?;
         let side = if self.of_source { -1.0 } else { 1.0 };

@@ -97,29 +97,38 @@ pub fn coverage(
     Ok(Coverage::of(measured, limit))
 }
 
-/// Nodes of a part that lie within a range of distances from the other one.
+/// A node with the place of the other part that is closest to it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NearNode {
+    pub(super) node: u32,
+    /// Of the other part.
+    pub(super) triangle: u32,
+    /// In target length units.
+    pub(super) distance: f64,
+}
+
+/// Nodes of a part that lie near the other one.
 #[derive(Debug, Clone, Default)]
-pub(super) struct FarNodes {
-    pub(super) nodes: Vec<u32>,
+pub(super) struct NearNodes {
+    pub(super) nodes: Vec<NearNode>,
     /// How many nodes of the mesh each stands for.
     pub(super) per_node: usize,
 }
 
-/// [`coverage`] with the nodes of source and target that lie farther apart than the first and no farther than the second
-/// of two distances, in target length units.
-pub(super) fn coverage_and_far(
+/// [`coverage`] with the nodes of source and target that lie no farther apart than `reach`, in target length units.
+pub(super) fn coverage_and_near(
     pair: [&Surface; 2],
     target_from_source: &Similarity,
     limit: f64,
-    far: [f64; 2],
+    reach: f64,
     monitor: &Monitor,
-) -> Result<(Coverage, [FarNodes; 2]), Cancelled> {
+) -> Result<(Coverage, [NearNodes; 2]), Cancelled> {
     let measured = measured_both(pair, target_from_source, monitor)?;
-    let far = [0, 1].map(|side| FarNodes {
-        nodes: far_of(&measured[side], far),
+    let near = [0, 1].map(|side| NearNodes {
+        nodes: near_of(&measured[side], reach),
         per_node: step_of(pair[side]),
     });
-    Ok((Coverage::of(measured, limit), far))
+    Ok((Coverage::of(measured, limit), near))
 }
 
 /// Overlap of both directions, source first, from at most `n_points` nodes of each mesh: for a number that
@@ -162,6 +171,8 @@ const MOST_NODES: usize = 250_000;
 #[derive(Debug, Clone, Copy)]
 struct Measured {
     node: u32,
+    /// The closest of the other part, if there is one.
+    triangle: u32,
     /// From the other part, in target lengths.
     distance: f64,
     area: f64,
@@ -202,6 +213,7 @@ fn measured(
             near = hit.map(|hit| hit.triangle);
             Measured {
                 node: node as u32,
+                triangle: near.unwrap_or(0),
                 distance: hit.map_or(f64::INFINITY, |hit| hit.distance_sq.sqrt() * unit),
                 area: data.vertex_areas()[node],
             }
@@ -217,11 +229,14 @@ fn measured(
     Ok(measured)
 }
 
-fn far_of(measured: &[Measured], [from, to]: [f64; 2]) -> Vec<u32> {
-    let far = measured
-        .iter()
-        .filter(|m| m.distance > from && m.distance <= to);
-    far.map(|m| m.node).collect()
+fn near_of(measured: &[Measured], reach: f64) -> Vec<NearNode> {
+    let near = measured.iter().filter(|m| m.distance <= reach);
+    let nodes = near.map(|m| NearNode {
+        node: m.node,
+        triangle: m.triangle,
+        distance: m.distance,
+    });
+    nodes.collect()
 }
 
 fn one_sided(mut measured: Vec<Measured>, limit: f64) -> OneSided {

@@ -108,11 +108,24 @@ pub(super) fn decide(assessment: &mut Assessment, grounds: &Grounds<'_>) {
     if let Some(pose) = &mut assessment.pose {
         pose.kind = pose_kind(&reasons);
     }
+    if verdict == Verdict::Poor {
+        // Where there is no pose, it does not matter how well one of them is held.
+        reasons.retain(|reason| !is_about_hold(reason));
+    }
     reasons.sort_by_key(|reason| std::cmp::Reverse(reason.severity()));
     // Nothing else that was found means anything beside it.
     reasons.splice(..0, several.filter(|_| verdict == Verdict::Poor));
     assessment.verdict = verdict;
     assessment.reasons = reasons;
+}
+
+/// True for what says how free a pose is, and not that it is none.
+fn is_about_hold(reason: &Reason) -> bool {
+    use Reason::{EqualAlternative, NearAlternative, Sliding, Uncertain};
+    matches!(
+        reason,
+        EqualAlternative { .. } | NearAlternative { .. } | Sliding { .. } | Uncertain { .. }
+    )
 }
 
 /// Adds a reason that the two parts alone do not give, and what follows from it.

@@ -1,12 +1,14 @@
 //! The evidence of a pose: where the surfaces and the borders of two parts meet under it. The search for it is
 //! prepared once and asked for one pose after another.
 
+use rayon::prelude::*;
+
 use super::borders::{BorderComparison, Borders};
 use super::contact::{Contact, ContactSearch, Contacts, MAX_NODES};
-use super::coverage::FarNodes;
+use super::coverage::{NearNode, NearNodes};
 use super::least_squares::NormalEquations;
 use super::tolerance::Distances;
-use crate::geometry::{Point3, Similarity};
+use crate::geometry::{Point3, Similarity, Vector3};
 use crate::registration::Surface;
 
 /// Two parts under a pose, and where they meet.
@@ -22,8 +24,8 @@ pub(crate) struct PoseEvidence<'a> {
     pub(super) reach: f64,
     /// The largest offset between two skins of one sheet.
     pub(super) most_offset: f64,
-    /// Nodes of both parts that lie farther apart than the tolerance, where all were measured; else none.
-    pub(super) far: [FarNodes; 2],
+    /// Nodes of both parts within reach of the other, where all were measured; else none.
+    pub(super) near: [NearNodes; 2],
 }
 
 impl PoseEvidence<'_> {
@@ -51,13 +53,48 @@ impl PoseEvidence<'_> {
         self.search().of_larger(&self.pose, is_asked)
     }
 
-    /// Where the far nodes meet the other part: those of the source, and those of the target.
-    /// O(far nodes · log triangles).
-    pub(super) fn of_far(&self) -> [Vec<Contact>; 2] {
+    /// Where nodes meet the other part: those of the source, and those of the target, of which `is_asked` says so by
+    /// a rough place, normal and gap. None of a side of which more than `most` are asked.
+    /// O(nodes near the other part + nodes asked · log triangles).
+    pub(super) fn of_near(
+        &self,
+        is_asked: impl Fn(&Point3, &Vector3, f64) -> bool + Sync,
+        most: usize,
+    ) -> [Vec<Contact>; 2] {
         let search = self.search();
-        let [of_source, of_target] = &self.far;
-        [(true, of_source), (false, of_target)]
-            .map(|(of_source, far)| search.of_nodes(&self.pose, of_source, &far.nodes))
+        [true, false].map(|of_source| {
+            let near = &self.near[usize::from(!of_source)].nodes;
+            let asked = near.par_iter().filter(|near| {
+                let (point, normal, gap) = self.roughly(near, of_source);
+                is_asked(&point, &normal, gap)
+            });
+            let asked: Vec<u32> = asked.map(|near| near.node).collect();
+            if asked.len() > most {
+                return Vec::new();
+            }
+            search.of_nodes(&self.pose, of_source, &asked)
+        })
+    }
+
+    /// A contact by the plane of the closest triangle: place, normal on the target's side, and how far the source lies
+    /// in front of the target.
+    fn roughly(&self, near: &NearNode, of_source: bool) -> (Point3, Vector3, f64) {
+        let (data, model, model_from_data) = if of_source {
+            (self.source, self.target, self.pose)
+        } else {
+            (self.target, self.source, self.pose.inverse())
+        };
+        let position = data.mesh().positions()[near.node as usize];
+        let moved = model_from_data.apply(&position);
+        let [corner, ..] = model.mesh().corners(near.triangle as usize);
+        let normal = model.mesh().normal(near.triangle as usize);
+        let gap = near.distance.copysign((moved - corner).dot(&normal));
+        if of_source {
+            return (moved, normal, gap);
+        }
+        let own = data.vertex_normals()[near.node as usize];
+        let side = self.pose.rotate(&normal).dot(&own).signum();
+        (position, own, -gap * side)
     }
 
     /// Places of the smaller part that lie over a place of the larger one, where neither meets anything.
@@ -108,7 +145,7 @@ impl<'a, 'b> EvidenceSearch<'a, 'b> {
             noise: self.noise,
             reach: self.contacts.reach(),
             most_offset: self.most_offset,
-            far: Default::default(),
+            near: Default::default(),
         })
     }
 }

@@ -96,8 +96,18 @@ impl Fit {
         beyond_facets(place.gap - row.dot(&self.found), place)
     }
 
-    /// How far each of the bends, of size 1 at the border, moves the source from where it belongs if the pose is found as
-    /// if there were no bends; none where bends do not imitate that motion, which is told from them then. O(places).
+    /// The same roughly, of a place that is known by its normal and its gap alone.
+    pub(super) fn left_of(
+        &self,
+        (point, normal): (&Point3, &Vector3),
+        gap: f64,
+        contacts: &Contacts,
+    ) -> f64 {
+        gap - explaining(contacts, &self.bends, point, normal, 1.0).dot(&self.found)
+    }
+
+    /// How far each of the bends, of size 1 at the border, moves the source from where it belongs if the pose is found
+    /// as if there were no bends; none where bends do not imitate that motion, which is told from them then. O(places).
     pub(super) fn pulled_by(&self, contacts: &Contacts) -> [Six; N_BENDS] {
         const BENDS: usize = Unknown::OFFSET + 1;
         let matrix = &self.equations.matrix;

@@ -93,9 +93,9 @@ pub(super) fn replicates<const N: usize>(
         .map(move |part| ((all - part).solved() - whole) * scale)
 }
 
-/// What noise alone leaves open: the residuals of the places counted as so many independent ones. It is small beside the
-/// replicates except for motions that hardly anything resists, such as the turn of a cup, which a missing patch does
-/// not show. Nothing is open by more than the radius of the places.
+/// What noise alone leaves open: the residuals of the places counted as so many independent ones. It is small beside
+/// the replicates except for motions that hardly anything resists, such as the turn of a cup, which a missing patch
+/// does not show. Nothing is open by more than the radius of the places.
 pub(super) fn left_open<const N: usize>(
     equations: &NormalEquations<N>,
     evidence: &PoseEvidence<'_>,

@@ -37,7 +37,7 @@ mod words;
 
 pub use ambiguity::{Ambiguity, Clarity, Twin, TwinAxis};
 pub use assessment::{AlternativeStatements, Assessment};
-use coverage::coverage_and_far;
+use coverage::coverage_and_near;
 pub use coverage::{Coverage, OneSided, coverage, overlap_limit, quick_overlap};
 pub use free_motion::{FreeMotion, FreeMotionKind, Freedom, free_motions};
 pub use pose::{PoseKind, PoseStatement};
@@ -77,8 +77,7 @@ pub fn assess(
         reach,
         ..
     } = Distances::of(source, target, pose.scale, settings);
-    let far = [tolerance.remainder, reach];
-    let (coverage, far) = coverage_and_far(pair, pose, limit, far, monitor)?;
+    let (coverage, near) = coverage_and_near(pair, pose, limit, reach, monitor)?;
     monitor.progress("verify", 1, Some(2));
     let freedom = free_motions(source, target, pose, limit);
     monitor.check()?;
@@ -89,7 +88,7 @@ pub fn assess(
     }
     let asked = Asked {
         motion: freedom.motion.as_ref(),
-        far,
+        near,
     };
     let Statements {
         uncertainty,
@@ -140,7 +139,8 @@ pub fn assess(
     Ok(assessment)
 }
 
-/// How far an offset of the sheets takes the scale of the pairs from 1: a tube is wider at its outer skin. O(triangles).
+/// How far an offset of the sheets takes the scale of the pairs from 1: a tube is wider at its outer skin.
+/// O(triangles).
 fn scale_of_offset(surface: &Surface, offset: f64) -> f64 {
     let (mesh, measures) = (surface.mesh(), surface.measures());
     // All points of a triangle's plane lie equally far out.

@@ -20,8 +20,8 @@ const LEAST_SHIFT: f64 = 0.5;
 /// Fewer holes may have been pierced elsewhere.
 const LEAST_HOLES: usize = 3;
 
-/// How far the outline lies aside of the holes, if by more than `limit`; `None` where no shift explains how it lies, and
-/// where surfaces do not leave the part free to be shifted so: they agree with the holes then, and both sides were
+/// How far the outline lies aside of the holes, if by more than `limit`; `None` where no shift explains how it lies,
+/// and where surfaces do not leave the part free to be shifted so: they agree with the holes then, and both sides were
 /// trimmed elsewhere. `fit` is that of the evidence. O(places).
 pub(super) fn outline_aside_of_holes(
     evidence: &PoseEvidence<'_>,

@@ -171,8 +171,8 @@ pub enum ShapeReason {
     },
 }
 
-/// Whether a part of which this share meets the other one lies beyond its borders otherwise, with this share: hardly any
-/// of it lies where the other part is and does not meet it.
+/// Whether a part of which this share meets the other one lies beyond its borders otherwise, with this share: hardly
+/// any of it lies where the other part is and does not meet it.
 pub(crate) fn only_overhangs(met: f64, overhang: f64) -> bool {
     1.0 - met - overhang < ELSEWHERE
 }

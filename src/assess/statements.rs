@@ -2,7 +2,7 @@
 
 use super::borders::{BorderComparison, HOLES_THAT_HOLD};
 use super::contact::{ContactSearch, MAX_NODES};
-use super::coverage::FarNodes;
+use super::coverage::NearNodes;
 use super::decide::{LEAST_TOGETHER, NEAR_MIRROR};
 use super::evidence::{EvidenceSearch, PoseEvidence};
 use super::fit::Fit;
@@ -44,8 +44,8 @@ pub(crate) enum Outlines {
 pub(super) struct Asked<'a> {
     /// The motion that the surfaces leave free.
     pub(super) motion: Option<&'a FreeMotion>,
-    /// Nodes that lie far apart, where all of them were measured.
-    pub(super) far: [FarNodes; 2],
+    /// The nodes of both parts, where all of them were measured.
+    pub(super) near: [NearNodes; 2],
 }
 
 /// Both statements. O(border edges + nodes · log triangles).
@@ -57,7 +57,7 @@ pub(super) fn statements(
 ) -> Statements {
     let mut compared = Compared::under(pair, pose, settings, Outlines::Compared);
     if let Some(met) = &mut compared.met {
-        met.evidence.far = asked.far;
+        met.evidence.near = asked.near;
     }
     let mut shape = compared.shape(settings);
     if let Some(met) = &compared.met
@@ -184,8 +184,8 @@ impl<'a> Met<'a> {
         borders.share_within(&self.fit.borders, TOGETHER * borders.limit(tolerance))
     }
 
-    /// Whether so few of the borders lie together that the outlines among them may do so by chance, as one end does on a
-    /// part with an addendum all round, and no holes hold the part.
+    /// Whether so few of the borders lie together that the outlines among them may do so by chance, as one end does on
+    /// a part with an addendum all round, and no holes hold the part.
     fn hardly_lie_together(&self, tolerance: &ShapeTolerance) -> bool {
         let borders = &self.evidence.borders;
         let together = self.share_together(tolerance);

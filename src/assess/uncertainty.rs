@@ -22,8 +22,8 @@ const OFFSET_LEAVES: f64 = 0.25;
 /// brought the errors beyond three times the statement from five to three; twice as much mended no other.
 const BEND_SHARE: f64 = 0.3;
 
-/// Where a bend is much like a motion of the part, such as a slide of a smooth roof along itself, the pose takes most of
-/// it up, and only the other bends are seen. It may be so many times as large as they are.
+/// Where a bend is much like a motion of the part, such as a slide of a smooth roof along itself, the pose takes most
+/// of it up, and only the other bends are seen. It may be so many times as large as they are.
 const UNSEEN_BEND: f64 = 0.7;
 
 /// Bends that are so many times what remains are bends.
@@ -140,8 +140,8 @@ impl PoseUncertainty {
             }
             motions.extend(fit.pulled_by(contacts).map(|by| by * (UNSEEN_BEND * bend)));
         }
-        // Least squares over nodes and over surfaces, or over one half and the other, leave poses that differ by a share
-        // of a bend, whatever is solved for.
+        // Least squares over nodes and over surfaces, or over one half and the other, leave poses that differ by a
+        // share of a bend, whatever is solved for.
         motions.extend(every_way(BEND_SHARE * bend));
         if other_trims > 0.0 {
             motions.extend(trimmed_elsewhere(evidence, &equations, other_trims));
@@ -165,7 +165,14 @@ impl PoseUncertainty {
             .map(|p| (found.at(&p), p))
             .max_by(|a, b| a.0.total_cmp(&b.0))?;
         // Beyond the size of the part a linear step is no estimate any more.
-        found.largest = largest.min(source.measures().diagonal * pose.scale);
+        let most = source.measures().diagonal * pose.scale;
+        found.largest = largest.min(most);
+        if largest > most {
+            for motion in &mut found.motions {
+                motion.turn *= most / largest;
+                motion.shift *= most / largest;
+            }
+        }
         found.place = place;
         found.direction = found.direction_at(&place);
         found.along = along(source, pose, &found.direction);

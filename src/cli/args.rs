@@ -38,7 +38,14 @@ pub struct Cli {
     pub realistic: bool,
 
     /// Number of threads, at most 1024; 0 uses one per core, and never more than four per core are used.
-    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, default_value_t = 0, value_parser = count(0..=1024))]
+    #[arg(
+        long,
+        global = true,
+        value_name = "N",
+        allow_negative_numbers = true,
+        default_value_t = 0,
+        value_parser = count(0..=1024)
+    )]
     pub threads: usize,
 
     /// Print no progress and no warnings; results and errors are still printed.

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use super::args::BenchArgs;
 use super::bench::{check_table, write_table};
-use super::progress;
+use super::{UsageError, progress};
 use crate::pipeline::bench::growth::{GrowthTable, growth};
 use crate::pipeline::bench::growth_page::{GROWTH_COLUMNS, growth_page};
 
@@ -15,6 +15,10 @@ pub fn run(args: &BenchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let monitor = progress::monitor(quiet);
     let table = growth(args.largest, &monitor, |_| {})?;
     drop(monitor);
+    if table.rows.is_empty() {
+        let text = format!("--largest {}: no pair is that small", args.largest);
+        return Err(UsageError(text).into());
+    }
     write_table(args, &describe(&table), &table, &growth_page(&table))
 }
 

@@ -136,9 +136,19 @@ fn parts_table(info: &ModelInfo) -> String {
         .max()
         .unwrap_or(0)
         .clamp(5, 40);
+    let has_solids = info.solids > 0;
+    let solids = |text: &dyn std::fmt::Display| match has_solids {
+        true => format!("  {text:>9}"),
+        false => String::new(),
+    };
     let mut table = format!(
-        "{:>12}  {:<width$}  {:>9}  {:>9}  {:>9}\n",
-        "id", "title", "shells", "triangles", "thickness"
+        "{:>12}  {:<width$}  {:>9}{}  {:>9}  {:>9}\n",
+        "id",
+        "title",
+        "shells",
+        solids(&"solids"),
+        "triangles",
+        "thickness"
     );
     for part in &info.parts {
         let thickness = part.thickness.map_or_else(|| "-".into(), length);
@@ -146,8 +156,11 @@ fn parts_table(info: &ModelInfo) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(
             table,
-            "{:>12}  {title:<width$}  {:>9}  {:>9}  {thickness:>9}",
-            part.id, part.shells, part.triangles
+            "{:>12}  {title:<width$}  {:>9}{}  {:>9}  {thickness:>9}",
+            part.id,
+            part.shells,
+            solids(&part.solids),
+            part.triangles
         );
     }
     table

@@ -137,11 +137,26 @@ struct MapOutputArgs {
     #[arg(long, value_enum, requires = "out", default_value = "include")]
     write: KindName,
     /// 16 columns a number instead of 10.
-    #[arg(long, value_name = "YES|NO", requires = "out", default_value = "yes", action = ArgAction::Set, hide_possible_values = true, value_parser = BoolishValueParser::new())]
+    #[arg(
+        long,
+        value_name = "YES|NO",
+        requires = "out",
+        default_value = "yes",
+        action = ArgAction::Set,
+        hide_possible_values = true,
+        value_parser = BoolishValueParser::new()
+    )]
     large: bool,
     /// Thickness of elements without values: that of their section, a length, or nearest for that of the
     /// nearest element that has one.
-    #[arg(long, value_name = "section|LENGTH|nearest", requires = "out", allow_negative_numbers = true, default_value = "section", value_parser = default_thickness)]
+    #[arg(
+        long,
+        value_name = "section|LENGTH|nearest",
+        requires = "out",
+        allow_negative_numbers = true,
+        default_value = "section",
+        value_parser = default_thickness
+    )]
     default_thickness: DefaultThickness,
     /// Smallest share of the area that must be mapped, percent; below it the exit status is 1.
     #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, value_parser = percent)]

@@ -53,11 +53,24 @@ pub struct MapCarArgs {
     #[command(flatten)]
     read: ReadArgs,
     /// 16 columns a number instead of 10.
-    #[arg(long, value_name = "YES|NO", default_value = "yes", action = ArgAction::Set, hide_possible_values = true, value_parser = BoolishValueParser::new())]
+    #[arg(
+        long,
+        value_name = "YES|NO",
+        default_value = "yes",
+        action = ArgAction::Set,
+        hide_possible_values = true,
+        value_parser = BoolishValueParser::new()
+    )]
     large: bool,
     /// Thickness of elements without values: that of their section, a length, or nearest for that of the
     /// nearest element that has one.
-    #[arg(long, value_name = "section|LENGTH|nearest", allow_negative_numbers = true, default_value = "section", value_parser = default_thickness)]
+    #[arg(
+        long,
+        value_name = "section|LENGTH|nearest",
+        allow_negative_numbers = true,
+        default_value = "section",
+        value_parser = default_thickness
+    )]
     default_thickness: DefaultThickness,
 
     #[command(flatten)]

@@ -80,8 +80,8 @@ fn wrote(files: &MapFiles, failed: &[PathBuf]) -> Vec<(&'static str, String)> {
         .iter()
         .filter(|file| !failed.contains(&file.path));
     for file in written {
-        let megabytes = file.bytes.len() as f64 / 1e6;
-        let text = format!("{} ({megabytes:.1} MB)", file.path.display());
+        let size = size_text(file.bytes.len());
+        let text = format!("{} ({size})", file.path.display());
         lines.push(("Wrote", text));
         if let Some(replaced) = file.place_taken() {
             lines.push(("", replaced));
@@ -105,6 +105,16 @@ fn wrote(files: &MapFiles, failed: &[PathBuf]) -> Vec<(&'static str, String)> {
         lines.push(("", format!("{n} of the thicknesses {verb} the default one")));
     }
     lines
+}
+
+/// The size of a file: "12.3 kB", "4.5 MB".
+fn size_text(n_bytes: usize) -> String {
+    let n_bytes = n_bytes as f64;
+    if n_bytes < 1e5 {
+        format!("{:.1} kB", n_bytes / 1e3)
+    } else {
+        format!("{:.1} MB", n_bytes / 1e6)
+    }
 }
 
 /// How many checks are met, those that are not, and why one is not judged, or as it is.

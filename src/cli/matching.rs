@@ -178,7 +178,8 @@ fn write(
 ) -> anyhow::Result<()> {
     let silent = Monitor::silent();
     let notes = if is_stdout(path) {
-        let made = output.make(input, None, &silent)?;
+        // As if it stood in the folder where it is asked for.
+        let made = output.make_in(input, None, Some(Path::new(".")), &silent)?;
         print_exactly(&made.bytes)?;
         made.notes
     } else {

@@ -137,7 +137,7 @@ pub(super) fn pose(option: &str, word: &str) -> anyhow::Result<Similarity> {
         Err(_) if !matches!(typed, ParseMatrixError::Count(0..=1)) => {
             return Err(usage(typed).into());
         }
-        Err(error) => return Err(error).with_context(|| format!("cannot read {word}")),
+        Err(error) => return Err(error).with_context(|| format!("{word:?} cannot be read")),
     };
     let parsed = parse_matrix(&text).map_err(usage)?;
     for note in &parsed.notes {
@@ -179,7 +179,7 @@ mod tests {
     use super::*;
     use crate::formats::{self, ReadOptions};
     use crate::geometry::{Pose, Vector3};
-    use crate::registration::{DataSide, Floor, Metric, PairWith, Search, Selection};
+    use crate::registration::{DataSide, Floor, Metric, PairSelection, PairWith, Search};
     use crate::report::command_line::{CommandLine, CommandSide};
     use crate::settings::{Domain, SETTINGS, Setting};
     use crate::units::{LengthUnit, UnitSystem};
@@ -237,17 +237,17 @@ mod tests {
             |a| a.recipe.settings.pair_with = PairWith::Triangle,
             |a| a.recipe.settings.metric = Metric::PointToPoint,
             |a| a.recipe.settings.metric = Metric::PointToPlane,
-            |a| a.recipe.settings.selection = Selection::All,
-            |a| a.recipe.settings.selection = Selection::TrimmedSearch,
-            |a| a.recipe.settings.selection = Selection::Trimmed { overlap: 0.1 + 0.2 },
+            |a| a.recipe.settings.selection = PairSelection::All,
+            |a| a.recipe.settings.selection = PairSelection::TrimmedSearch,
+            |a| a.recipe.settings.selection = PairSelection::Trimmed { overlap: 0.1 + 0.2 },
             |a| {
-                a.recipe.settings.selection = Selection::Fractional {
+                a.recipe.settings.selection = PairSelection::Fractional {
                     lambda: 1.3,
                     floor: Floor::Length(1e-7),
                 }
             },
             |a| {
-                a.recipe.settings.selection = Selection::Fractional {
+                a.recipe.settings.selection = PairSelection::Fractional {
                     lambda: 1.5,
                     floor: Floor::None,
                 }

@@ -36,14 +36,16 @@ fn settings(args: &BenchArgs) -> anyhow::Result<RobustnessSettings> {
     let words: Vec<&str> = only.split(',').map(str::trim).collect();
     let parts = SamplePart::ALL.map(|part| part.name().to_owned());
     let scenarios = Scenario::ALL.map(Scenario::name);
-    let begins = |word: &&str, names: &[String]| names.iter().any(|name| name.starts_with(*word));
+    // A name may hold a comma too: "coarse, 16-20 mm".
+    let names = |word: &str, name: &str| name.split(", ").any(|piece| piece.starts_with(word));
+    let begins = |word: &&str, all: &[String]| all.iter().any(|name| names(word, name));
     let is_unknown = |word: &&&str| !begins(word, &parts) && !begins(word, &scenarios);
     if let Some(word) = words.iter().find(is_unknown) {
-        let (parts, scenarios) = (parts.join(", "), scenarios.join(", "));
+        let (parts, scenarios) = (parts.join("; "), scenarios.join("; "));
         let text = format!("no part ({parts}) and no scenario ({scenarios}) begins like {word:?}");
         return Err(UsageError(text).into());
     }
-    let is_meant = |name: &str| words.iter().any(|word| name.starts_with(word));
+    let is_meant = |name: &str| words.iter().any(|word| names(word, name));
     let all = SamplePart::ALL.into_iter();
     let parts: Vec<SamplePart> = all.filter(|part| is_meant(part.name())).collect();
     let all = Scenario::ALL.into_iter();

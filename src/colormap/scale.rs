@@ -16,8 +16,10 @@ pub struct ColorScale {
     pub min: f64,
     /// Value at the upper end; larger values take its colour.
     pub max: f64,
-    /// Values within ± this are neutral; 0 for no band.
+    /// Values within ± this and between the ends are neutral; 0 for no band.
     pub tolerance: f64,
+    /// Zero takes the middle of a map that has one, wherever the ends are.
+    pub is_signed: bool,
     /// Cuts the map into this many plain colours (2 … 32); `None` for a smooth map.
     pub n_bands: Option<u8>,
     /// Turns the map round.
@@ -69,6 +71,7 @@ impl ColorScale {
             min,
             max,
             tolerance: 0.0,
+            is_signed: false,
             n_bands: None,
             reversed: false,
             has_pattern: false,
@@ -102,6 +105,7 @@ impl ColorScale {
     pub fn symmetric(limit: f64, tolerance: f64) -> Self {
         Self {
             tolerance,
+            is_signed: true,
             ..Self::new(ColorMap::CoolWarm, -limit, limit)
         }
     }
@@ -132,19 +136,50 @@ impl ColorScale {
         if value.is_nan() {
             return UNMATCHED;
         }
-        if self.tolerance > 0.0 && value.abs() <= self.tolerance {
+        if self.is_tolerated(value) && self.is_between(value) {
             return NEUTRAL;
         }
-        let mut t = if self.is_folded() {
+        let t = if self.is_folded() {
             value.abs() / self.max.abs().max(self.min.abs())
+        } else if self.is_signed && self.map == ColorMap::CoolWarm {
+            self.position_about_zero(value)
         } else {
             self.position(value)
         };
-        if let Some(n) = self.n_bands {
-            let n = f64::from(n.clamp(2, 32));
-            t = (t * n).floor().min(n - 1.0) / (n - 1.0);
-        }
+        self.color_at(t)
+    }
+
+    /// Colour at a place of the map, 0 … 1.
+    fn color_at(&self, t: f64) -> Rgb {
+        let t = match self.n_bands {
+            Some(n) => {
+                let n = f64::from(n.clamp(2, 32));
+                (t * n).floor().min(n - 1.0) / (n - 1.0)
+            }
+            None => t,
+        };
         self.map.sample(if self.reversed { 1.0 - t } else { t })
+    }
+
+    fn is_between(&self, value: f64) -> bool {
+        (self.min.min(self.max)..=self.min.max(self.max)).contains(&value)
+    }
+
+    fn is_tolerated(&self, value: f64) -> bool {
+        self.tolerance > 0.0 && value.abs() <= self.tolerance
+    }
+
+    /// [`Self::position`] with zero in the middle: each side reaches to its own end.
+    fn position_about_zero(&self, value: f64) -> f64 {
+        if value > self.max {
+            return 1.0;
+        }
+        if value < self.min {
+            return 0.0;
+        }
+        let end = if value < 0.0 { self.min } else { self.max };
+        let share = if end == 0.0 { 0.0 } else { (value / end).abs() };
+        0.5 + 0.5 * share.min(1.0).copysign(value)
     }
 
     /// True where the map cannot tell the sign of values: it says how large they are, and the pattern
@@ -176,7 +211,7 @@ impl ColorScale {
         }
         if !(self.has_pattern || self.is_folded())
             || value.is_nan()
-            || value.abs() <= self.tolerance
+            || value.abs() <= self.tolerance && self.is_between(value)
         {
             Pattern::Plain
         } else if value < 0.0 {
@@ -187,11 +222,22 @@ impl ColorScale {
     }
 
     /// The colours of `n` equal steps from end to end, sampled in their middles: the texture of the
-    /// graphics card and the picture of the legend.
+    /// graphics card and the picture of the legend. Of values with a sign the end steps have the colours of
+    /// what lies beyond them.
     pub fn table(&self, n: usize) -> Vec<Rgb> {
-        (0..n)
-            .map(|i| self.color(self.value_at((i as f64 + 0.5) / n as f64)))
-            .collect()
+        let middle = |i: usize| self.color(self.value_at((i as f64 + 0.5) / n as f64));
+        let mut colors: Vec<Rgb> = (0..n).map(middle).collect();
+        if let [first, .., last] = &mut colors[..]
+            && self.is_signed
+        {
+            let at_end = |end: f64, place: f64| match self.is_tolerated(end) {
+                true => self.color_at(place),
+                false => self.color(end),
+            };
+            *first = at_end(self.min, 0.0);
+            *last = at_end(self.max, 1.0);
+        }
+        colors
     }
 
     /// Round values for the legend: at most `max_ticks` (at least 2), 1, 2 or 5 times a power of ten
@@ -259,6 +305,32 @@ mod tests {
         let plain = ColorScale::new(ColorMap::Grey, 0.0, 2.0);
         assert_eq!(plain.pattern(1.0), Pattern::Plain);
         assert!(plain.color(0.1)[0] > plain.color(1.9)[0]);
+    }
+
+    #[test]
+    fn zero_is_neutral_whatever_the_ends() {
+        let warm = |color: Rgb| color[0] > color[2] && color != NEUTRAL;
+        let cold = |color: Rgb| color[2] > color[0] && color != NEUTRAL;
+        for (min, max) in [
+            (-2.0, 0.0),
+            (-2.0, 0.2),
+            (-2.0, 5000.0),
+            (0.0, 2.0),
+            (-2.0, 2.0),
+        ] {
+            let scale = ColorScale {
+                tolerance: 0.5,
+                is_signed: true,
+                ..ColorScale::new(ColorMap::CoolWarm, min, max)
+            };
+            assert_eq!(scale.color(0.0), NEUTRAL);
+            assert!(cold(scale.color(-0.6)) || min == 0.0 && cold(scale.color(-2.5)));
+            let far = 2.0 * max.max(2.0);
+            assert!(warm(scale.color(far)), "{far} of {min} … {max}");
+            assert!(cold(scale.color(-far)), "-{far} of {min} … {max}");
+            let table = scale.table(1024);
+            assert!(cold(table[0]) && warm(table[1023]), "{min} … {max}");
+        }
     }
 
     #[test]

@@ -1,6 +1,5 @@
 //! A model at another pose: nodes moved, tensors turned, corners renumbered under a mirror.
 
-use std::collections::HashSet;
 use std::ops::Range;
 
 use super::model::{Forming, Model, Part, ShellExtra, Solid};
@@ -8,9 +7,10 @@ use crate::geometry::Similarity;
 use crate::geometry::tensor::rotated;
 
 /// The model under `motion`: nodes moved, stress and strain tensors turned with them (they are in
-/// the global frame, but for stresses in element axes, which turn with the elements), thicknesses scaled. Ids stay. Nodes whose id is repeated are moved like all
-/// others. History variables are kept as they are; the tensors among them that the file names as such
-/// (`NTENSR`) are turned. Density and modulus of materials are not known in a scaled model. O(model).
+/// the global frame, but for stresses in element axes, which turn with the elements), thicknesses scaled.
+/// Ids stay. Nodes whose id is repeated are moved like all others. History variables are kept as they are;
+/// the tensors among them that the file names as such (`NTENSR`) are turned. Density and modulus of
+/// materials are not known in a scaled model. O(model).
 ///
 /// Under a mirror the corners of shells and solids change to the order 2 1 4 3, and with them
 /// corner thicknesses, mid-side nodes and integration points in the plane. The mirrored sheet then
@@ -48,7 +48,7 @@ pub fn moved(model: &Model, motion: &Similarity) -> Model {
 }
 
 fn turn(model: &mut Model, motion: &Similarity) {
-    let in_element_axes = shells_in_element_axes(model);
+    let in_element_axes = model.shells_in_element_axes();
     let (forming, rotation) = (&mut model.forming, &motion.rotation);
     for index in 0..forming.n_stress() {
         let is_turned = !in_element_axes.contains(&forming.stress(index).element_id);
@@ -75,19 +75,9 @@ fn turn(model: &mut Model, motion: &Similarity) {
     }
 }
 
-/// The shells whose stresses are read in element axes.
-fn shells_in_element_axes(model: &Model) -> HashSet<u64> {
-    let is_meant: Vec<bool> = (model.parts.iter())
-        .map(|part| model.is_in_element_axes(part.id))
-        .collect();
-    let shells = model.shells.iter();
-    let meant = shells.filter(|shell| is_meant[shell.part as usize]);
-    meant.map(|shell| shell.id).collect()
-}
-
 /// A tensor in element axes once the mirrored element has the order 2 1 4 3: its first axis, along the first edge,
 /// points the other way, the normal and the axis between both do not.
-fn along_other_way([xx, yy, zz, xy, yz, zx]: &[f64; 6]) -> [f64; 6] {
+pub(super) fn along_other_way([xx, yy, zz, xy, yz, zx]: &[f64; 6]) -> [f64; 6] {
     [*xx, *yy, *zz, -xy, *yz, -zx]
 }
 

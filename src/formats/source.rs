@@ -251,6 +251,10 @@ pub fn open_unpacked(
             io::ErrorKind::UnexpectedEof,
             "its gzip data are cut off; copy or download it again",
         ),
+        io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData => io::Error::new(
+            error.kind(),
+            "its gzip data are damaged; copy or download it again",
+        ),
         _ => error,
     })?;
     Ok((bytes, members.n_after))

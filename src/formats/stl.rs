@@ -193,7 +193,7 @@ impl Text<'_> {
                 b"vertex" => self.vertex(),
                 b"endfacet" => self.end_facet(),
                 b"normal" | b"color" => while self.words.next_if(real).is_some() {},
-                b"facet" => self.is_in_facet = true,
+                b"facet" => self.begin_facet(),
                 b"outer" | b"loop" | b"endloop" => {}
                 _ => self.polygons.warn(line, || {
                     let text = String::from_utf8_lossy(word).into_owned();
@@ -225,6 +225,16 @@ impl Text<'_> {
             *coordinate = value;
         }
         self.corners.push(corner);
+    }
+
+    fn begin_facet(&mut self) {
+        if self.is_in_facet {
+            let line = Some(self.words.line);
+            let text = || "a facet ends without endfacet; its vertices are left out".to_owned();
+            self.polygons.warn(line, text);
+            self.corners.clear();
+        }
+        self.is_in_facet = true;
     }
 
     fn end_facet(&mut self) {

@@ -43,6 +43,16 @@ impl Aabb {
         }
     }
 
+    /// What both have in common; empty where they do not meet.
+    pub fn intersection(&self, other: &Self) -> Self {
+        let (min, max) = (self.min.sup(&other.min), self.max.inf(&other.max));
+        if (0..3).all(|axis| min[axis] <= max[axis]) {
+            Self { min, max }
+        } else {
+            Self::empty()
+        }
+    }
+
     /// True if the box holds nothing.
     pub fn is_empty(&self) -> bool {
         self.min.x > self.max.x

@@ -9,7 +9,8 @@ const ROUND: f64 = 0.1;
 const LEAST_ROUND: usize = 4;
 /// Fewer vertices lie on a circle so closely by chance that they do not tell how round the hole is.
 const LEAST_KNOWN: usize = 8;
-/// Vertices lie around the centre of their circle if the middle of their edges is at most this share of the radius away.
+/// Vertices lie around the centre of their circle if the middle of their edges is at most this share of the radius
+/// away.
 const AROUND: f64 = 0.6;
 
 /// One border: a loop of border edges that passes no vertex twice, or a chain of them that ends where three triangles

@@ -29,8 +29,8 @@ pub struct Landmarks {
 }
 
 impl Landmarks {
-    /// Walks along all borders of a mesh. O(border edges).
-    pub fn of(mesh: &TriMesh, borders: &[Border]) -> Self {
+    /// Walks along borders of a mesh. O(their edges).
+    pub fn of<'a>(mesh: &TriMesh, borders: impl IntoIterator<Item = &'a Border>) -> Self {
         let mut found = Self::default();
         for border in borders {
             match round_hole(mesh, border) {
@@ -115,7 +115,7 @@ mod tests {
         let normals = vec![Vector3::z(); plate.n_vertices()];
         let edges = BorderEdges::of(&plate, &Topology::of(&plate));
         let borders = Border::all(&plate, &edges, &normals);
-        let found = Landmarks::of(&plate, &borders);
+        let found = Landmarks::of(&plate, borders.iter());
         assert_eq!(found.holes.len(), 1);
         assert!(found.holes[0].center.coords.norm() < 1e-9);
         assert!((found.holes[0].radius - 4.0).abs() < 1e-9);

@@ -122,6 +122,12 @@ impl TriMesh {
         self.area_vector(triangle).norm()
     }
 
+    /// Centroid of one triangle.
+    pub fn triangle_centroid(&self, triangle: usize) -> Point3 {
+        let [a, b, c] = self.corners(triangle);
+        Point3::from((a.coords + b.coords + c.coords) / 3.0)
+    }
+
     /// Area of the whole mesh. O(triangles), summed in index order.
     pub fn area(&self) -> f64 {
         (0..self.n_triangles()).map(|t| self.triangle_area(t)).sum()

@@ -30,6 +30,13 @@ impl Plane {
         (point - self.point).dot(&self.normal)
     }
 
+    /// True if it goes through a box or touches it.
+    pub fn meets(&self, bounds: &Aabb) -> bool {
+        let distances = bounds.corners().map(|corner| self.distance(&corner));
+        let side = |is_wanted: fn(f64) -> bool| distances.into_iter().any(is_wanted);
+        side(|distance| distance <= 0.0) && side(|distance| distance >= 0.0)
+    }
+
     /// Unit directions to the right and up when looking against the normal: up is as near to z as
     /// it can be, or to y for a plane across z.
     pub fn axes(&self) -> [Vector3; 2] {

@@ -55,7 +55,8 @@ pub fn components(matrix: &Matrix3) -> Tensor {
     ]
 }
 
-fn matrix(tensor: &Tensor) -> Matrix3 {
+/// A tensor as a symmetric matrix.
+pub fn matrix(tensor: &Tensor) -> Matrix3 {
     let [xx, yy, zz, xy, yz, zx] = *tensor;
     Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz)
 }

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::formats::{Model, PartSummary};
-use crate::geometry::{Aabb, Landmarks, Vector3};
+use crate::geometry::{Aabb, Border, Landmarks, Vector3};
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::joined_parts::joined_parts;
 use crate::pipeline::likeness::{Moments, moments_of_parts};
@@ -32,8 +32,8 @@ pub struct PartFacts {
     pub edge_length: f64,
     /// Area-weighted mean normal; its length says how flat the part is.
     pub mean_normal: Vector3,
-    /// Holes and corners, to be pointed at.
-    pub landmarks: Landmarks,
+    /// Holes and corners of each part with borders, to be pointed at.
+    pub landmarks: BTreeMap<u64, Landmarks>,
     /// Mean thickness of the matched elements, if known.
     pub thickness: Option<f64>,
     /// How much the file looks like the end of a forming simulation.
@@ -89,11 +89,33 @@ impl PartFacts {
             area: measures.area,
             edge_length: measures.mean_edge_length,
             mean_normal: measures.mean_normal,
-            landmarks: Landmarks::of(part.surface.mesh(), part.surface.borders()),
+            landmarks: landmarks(part),
             thickness: part.mean_thickness(),
             formed: FormingEvidence::of(model),
         })
     }
+}
+
+/// The landmarks of the parts, each border among those of the part of its first vertex. O(triangles).
+fn landmarks(part: &LoadedPart) -> BTreeMap<u64, Landmarks> {
+    let mesh = part.surface.mesh();
+    let mut part_of_vertex = vec![0; mesh.n_vertices()];
+    for (triangle, &owner) in mesh.triangles().iter().zip(part.ids.parts()) {
+        for &vertex in triangle {
+            part_of_vertex[vertex as usize] = owner;
+        }
+    }
+    let mut borders: BTreeMap<u64, Vec<&Border>> = BTreeMap::new();
+    for border in part.surface.borders() {
+        let Some(&first) = border.vertices.first() else {
+            continue;
+        };
+        let owner = part_of_vertex[first as usize];
+        let id = part.model.parts[owner as usize].id;
+        borders.entry(id).or_default().push(border);
+    }
+    let of_part = |(id, borders)| (id, Landmarks::of(mesh, borders));
+    borders.into_iter().map(of_part).collect()
 }
 
 fn part_bounds(part: &LoadedPart) -> BTreeMap<u64, Aabb> {

@@ -114,7 +114,7 @@ impl Worker {
         self.receiver.try_iter()
     }
 
-    /// The next event, waiting for it at most `timeout`; for tests and the command line only.
+    /// The next event, waiting for it at most `timeout`; for those that have nothing else to do.
     pub fn wait_event(&self, timeout: Duration) -> Option<JobEvent> {
         self.receiver.recv_timeout(timeout).ok()
     }

@@ -2,9 +2,9 @@
 //! so only as far as both meshes allow, and what is left moves the nodes when a calculation starts.
 
 use super::shells::ShellMesh;
+use crate::geometry::Vector3;
 use crate::geometry::chunks::for_chunks;
-use crate::geometry::tensor::Tensor;
-use crate::geometry::{Matrix3, Vector3};
+use crate::geometry::tensor::{Tensor, matrix};
 use crate::monitor::{Cancelled, Monitor};
 
 /// Sums over the nodes inside a sheet, for one or several meshes.
@@ -104,10 +104,6 @@ fn edge_normals(mesh: &ShellMesh, element: usize) -> [Vector3; 4] {
     }
     let (of_a, of_b) = (across(b - d), across(c - a));
     [of_a, of_b, -of_a, -of_b]
-}
-
-fn matrix([xx, yy, zz, xy, yz, zx]: &Tensor) -> Matrix3 {
-    Matrix3::new(*xx, *xy, *zx, *xy, *yy, *yz, *zx, *yz, *zz)
 }
 
 #[cfg(test)]

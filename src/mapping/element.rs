@@ -346,8 +346,8 @@ impl Context<'_> {
             let Some(point) = trail.centre.filter(|p| self.is_valid(element, p, reach)) else {
                 continue;
             };
-            n_inside += usize::from(!point.is_on_border);
             let candidate = Centre { source, point };
+            n_inside += usize::from(self.competes(&candidate));
             if best.is_none_or(|best| self.is_preferred(&candidate, &best)) {
                 best = Some(candidate);
             }

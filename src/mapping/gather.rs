@@ -1,5 +1,7 @@
 //! The points of a target element and the source elements that they take their values from.
 
+use std::cmp::Ordering;
+
 use super::blend::LEAST_COVERAGE;
 use super::element::Context;
 use super::nodal::around_nodes;
@@ -11,6 +13,11 @@ use crate::geometry::{Point3, Vector3};
 /// A point beyond the border of the source by more than this share of the element's size is
 /// outside the sheet.
 const BORDER_REACH: f64 = 0.25;
+
+/// Sheets that are given twice differ in their distance by less than this share of their thickness, …
+const SAME_PLACE: f64 = 0.5;
+/// … or where that is not known of the size of their elements.
+const SAME_PLACE_OF_SIZE: f64 = 0.1;
 
 /// Elements with more points than this cover so many source elements that each point had better walk
 /// through the tree by itself.
@@ -205,13 +212,12 @@ impl Context<'_> {
             } else if partner.distance_sq > reach * reach {
                 is_far = true;
             } else {
-                // Beside a weld line the border of the neighbour lies within reach too.
-                n_inside += usize::from(!partner.is_on_border);
                 let source = source as u32;
                 let candidate = Centre {
                     source,
                     point: partner,
                 };
+                n_inside += usize::from(self.competes(&candidate));
                 if best.is_none_or(|best| self.is_preferred(&candidate, &best)) {
                     best = Some(candidate);
                 }
@@ -271,8 +277,17 @@ impl Context<'_> {
         across.norm() > BORDER_REACH * self.target.mesh.size(element)
     }
 
-    /// True if of two valid partners in different sources the first is taken.
+    /// True if of two valid partners in different sources the first is taken: where both lie in one place the one that
+    /// has more of the quantities that are mapped, else the one that the options say.
     pub(super) fn is_preferred(&self, candidate: &Centre, best: &Centre) -> bool {
+        let n_known = |of: &Centre| {
+            let source = &self.sources[of.source as usize];
+            source.n_known(of.point.element as usize)
+        };
+        let by_results = n_known(candidate).cmp(&n_known(best));
+        if by_results != Ordering::Equal && self.are_in_one_place(candidate, best) {
+            return by_results == Ordering::Greater;
+        }
         match self.options.overlap {
             Overlap::First => false,
             Overlap::Nearest => candidate.point.distance_sq < best.point.distance_sq,
@@ -285,6 +300,30 @@ impl Context<'_> {
                 thickness(candidate) > thickness(best)
             }
         }
+    }
+
+    /// True if values could be taken from there as well. Beside a weld line the border of the neighbour lies within
+    /// reach too.
+    pub(super) fn competes(&self, partner: &Centre) -> bool {
+        let source = &self.sources[partner.source as usize];
+        !partner.point.is_on_border && source.n_known(partner.point.element as usize) > 0
+    }
+
+    /// True if two partners are one sheet that was given twice, and not two sheets on each other.
+    fn are_in_one_place(&self, a: &Centre, b: &Centre) -> bool {
+        let [of_a, of_b] = [a, b].map(|of| {
+            let source = &self.sources[of.source as usize];
+            let element = of.point.element as usize;
+            (source.mean_thickness(element), source.mesh.size(element))
+        });
+        // NaN is no maximum.
+        let thickness = of_a.0.max(of_b.0);
+        let apart = if thickness.is_finite() {
+            SAME_PLACE * thickness
+        } else {
+            SAME_PLACE_OF_SIZE * of_a.1.min(of_b.1)
+        };
+        (a.point.distance_sq.sqrt() - b.point.distance_sq.sqrt()).abs() <= apart
     }
 
     fn add_to_group(

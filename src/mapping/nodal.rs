@@ -1,12 +1,10 @@
 //! Means at the nodes and shape functions between them: how most tools interpolate values of elements.
 
-use super::patch::cos_between;
+use super::patch::{LEAST_BEND_COS, cos_between};
 use super::shells::ShellMesh;
 use super::source::{PreparedSource, SourcePoint};
 use crate::geometry::Point3;
 
-/// Elements across a sharper bend have no part in the mean at a node.
-const MOST_BENT_DEG: f64 = 40.0;
 /// Steps of Newton's method on the bilinear shape functions.
 const STEPS: usize = 8;
 
@@ -19,7 +17,6 @@ pub(super) fn around_nodes(
     mut add: impl FnMut(u32, bool, f64),
 ) {
     let (mesh, own) = (&source.mesh, at.element as usize);
-    let min_cos = MOST_BENT_DEG.to_radians().cos();
     let corners = mesh.corner_points(own);
     let weights = shape_functions(mesh, own, &at.point);
     let neighbours = source.neighbours();
@@ -33,7 +30,7 @@ pub(super) fn around_nodes(
             .filter(|&element| {
                 let element = element as usize;
                 source.gauge[element] == source.gauge[own]
-                    && cos_between(mesh, neighbours, own, element) >= min_cos
+                    && cos_between(mesh, neighbours, own, element) >= LEAST_BEND_COS
                     && mesh.corner_points(element).contains(corner)
             });
         let around: Vec<u32> = around.collect();

@@ -9,8 +9,8 @@ use super::links::Neighbours;
 use super::shells::ShellMesh;
 use crate::geometry::Vector3;
 
-/// Neighbours whose normals differ by more than this are beyond an edge of the sheet.
-const MAX_DIHEDRAL_COS: f64 = 0.766_044_443_118_978; // cos 40°
+/// Neighbours whose normals differ by more than 40° are beyond an edge of the sheet: cosine of that angle.
+pub(super) const LEAST_BEND_COS: f64 = 0.766_044_443_118_978;
 /// A jump in thickness by more than this fraction is a weld line between two gauges.
 const WELD_LINE_JUMP: f64 = 0.05;
 
@@ -126,7 +126,7 @@ impl Patch {
         let [mut xx, mut xy, mut yy] = [0.0; 3];
         for &other in neighbours.of(element) {
             let n = other as usize;
-            if cos_between(mesh, neighbours, element, n) < MAX_DIHEDRAL_COS
+            if cos_between(mesh, neighbours, element, n) < LEAST_BEND_COS
                 || is_weld_line(mesh, thickness, element, n)
             {
                 continue;

@@ -175,9 +175,12 @@ impl LayerRule {
         }
     }
 
+    /// Where strains of both surfaces stand.
+    pub const SURFACES: [f64; 2] = [-1.0, 1.0];
+
     /// Both surfaces, as strains are often written.
     pub fn surfaces() -> Self {
-        Self::from_places(vec![-1.0, 1.0])
+        Self::from_places(Self::SURFACES.to_vec())
     }
 
     /// The Gauss or Lobatto rule whose places these are (in rising order), as far as decks give digits;

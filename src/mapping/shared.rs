@@ -8,8 +8,9 @@ use crate::geometry::Point3;
 pub(super) const ON_EDGE: f64 = 1e-9;
 
 impl PreparedSource<'_> {
-    /// Of the elements that share a point on the border of `own`, which is an element and whether it is flipped, the one with the
-    /// lowest number that the filter lets through. The point is given by corners of `own` and their weights.
+    /// Of the elements that share a point on the border of `own`, which is an element and whether it is flipped, the
+    /// one with the lowest number that the filter lets through. The point is given by corners of `own` and their
+    /// weights.
     pub(super) fn lowest_sharing(
         &self,
         own: (u32, bool),

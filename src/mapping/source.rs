@@ -27,8 +27,8 @@ const CHECKED_AFTER: usize = 1 << 14;
 pub struct SourcePart {
     /// Elements the values belong to.
     pub mesh: ShellMesh,
-    /// Thickness at the corners in the target's length unit; NaN or 0 where it is not known. Empty if
-    /// there is none at all.
+    /// Thickness at the corners in the target's length unit; NaN or 0 where it is not known. The fourth of a
+    /// triangle is the mean of its three. Empty if there is none at all.
     pub thickness: Vec<[f64; 4]>,
     /// Stress xx, yy, zz, xy, yz, zx and effective plastic strain at each layer.
     pub states: Layered<7>,
@@ -144,13 +144,11 @@ impl<'a> PreparedSource<'a> {
         } else {
             Vec::new()
         };
-        let is_known = |t: &&f64| t.is_finite();
-        let thickness_range = thickness
-            .iter()
-            .filter(is_known)
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| {
-                (low.min(*t), high.max(*t))
-            });
+        let at_corners = part.thickness.as_flattened().iter();
+        let known = at_corners.filter(|t| t.is_finite());
+        let thickness_range = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| {
+            (low.min(*t), high.max(*t))
+        });
         Ok(Self {
             part,
             pose: *target_from_source,
@@ -322,6 +320,17 @@ impl<'a> PreparedSource<'a> {
         self.thickness.get(element).copied().unwrap_or(f64::NAN)
     }
 
+    /// How many of the quantities that are mapped an element has: thickness, states, strains.
+    pub fn n_known(&self, element: usize) -> usize {
+        let has_thickness = self.wants_thickness && self.mean_thickness(element).is_finite();
+        let has_states = !self.states.is_empty() && self.part.states.of(element).is_some();
+        let has_strains = !self.strains.is_empty() && self.part.strains.of(element).is_some();
+        [has_thickness, has_states, has_strains]
+            .into_iter()
+            .filter(|has| *has)
+            .count()
+    }
+
     /// Distance to the sheet whatever its normal, if within `max_distance`.
     pub fn distance(&self, query: &Point3, max_distance: f64) -> Option<f64> {
         let hit = self.bvh.closest(query, max_distance, None, None)?;
@@ -441,8 +450,9 @@ fn states_at<'a>(part: &'a SourcePart, rule: &LayerRule, balance: LayerBalance) 
     })
 }
 
-/// Numbers the sheets of one gauge: elements that are linked by smooth neighbours. Small islands
-/// join the neighbour they have most to do with, because a spot of strong thinning is no weld line.
+/// Numbers the sheets of one gauge: elements that are linked by smooth neighbours. A small island as a whole
+/// joins the large sheet with which most of its elements' edges are shared, because a spot of strong thinning
+/// is no weld line.
 fn gauges(
     mesh: &ShellMesh,
     neighbours: &Neighbours,
@@ -477,13 +487,23 @@ fn gauges(
         }
     }
     let least = SMALLEST_GAUGE * areas.iter().sum::<f64>();
-    for element in 0..mesh.len() {
-        if areas[gauge[element] as usize] < least {
-            let large = neighbours.of(element).iter().map(|&n| gauge[n as usize]);
-            if let Some(joined) = large.filter(|&g| areas[g as usize] >= least).min() {
-                gauge[element] = joined;
-            }
+    let is_large = |number: u32| areas[number as usize] >= least;
+    let mut shared: BTreeMap<(u32, u32), usize> = BTreeMap::new();
+    for element in (0..mesh.len()).filter(|&element| !is_large(gauge[element])) {
+        let beside = neighbours.of(element).iter().map(|&n| gauge[n as usize]);
+        for large in beside.filter(|&number| is_large(number)) {
+            *shared.entry((gauge[element], large)).or_default() += 1;
         }
+    }
+    let mut joined: BTreeMap<u32, (u32, usize)> = BTreeMap::new();
+    for ((island, large), n_edges) in shared {
+        let most = joined.entry(island).or_insert((large, n_edges));
+        if n_edges > most.1 {
+            *most = (large, n_edges);
+        }
+    }
+    for number in &mut gauge {
+        *number = joined.get(number).map_or(*number, |(large, _)| *large);
     }
     Ok(gauge)
 }

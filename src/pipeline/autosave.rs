@@ -332,16 +332,13 @@ impl Session {
         let Some(path) = self.path() else {
             return Ok(());
         };
+        let is_first = self.lock.is_none();
+        if is_first {
+            // Before the session is there: no other window is to take it for one that was lost.
+            self.lock = Some(locked(lock_of(&path))?);
+        }
         project.write_in_new_folder(&path)?;
-        if self.lock.is_none() {
-            let lock = lock_of(&path);
-            let file = File::create(&lock).map_err(|error| PipelineError::Write {
-                path: lock,
-                reason: error.to_string(),
-            })?;
-            // Where a system has no locks, the session of a window that still runs may be offered.
-            let _ = file.try_lock();
-            self.lock = Some(file);
+        if is_first {
             self.prune();
         }
         Ok(())
@@ -416,12 +413,28 @@ fn lock_of(path: &Path) -> PathBuf {
     path.with_extension("lock")
 }
 
+/// The lock of a session, held until the file is dropped. Others who look whether it is held do so for a moment.
+fn locked(path: PathBuf) -> Result<File, PipelineError> {
+    let file = (path.parent().map_or(Ok(()), std::fs::create_dir_all))
+        .and_then(|()| File::create(&path))
+        .map_err(|error| PipelineError::Write {
+            path,
+            reason: error.to_string(),
+        })?;
+    // Where a system has no locks, the session of a window that still runs may be offered.
+    let _ = file.lock();
+    Ok(file)
+}
+
 /// True if the program of this session still runs.
 fn is_held(path: &Path) -> bool {
     let Ok(file) = File::open(lock_of(path)) else {
         return false;
     };
-    matches!(file.try_lock(), Err(std::fs::TryLockError::WouldBlock))
+    matches!(
+        file.try_lock_shared(),
+        Err(std::fs::TryLockError::WouldBlock)
+    )
 }
 
 /// Marks the session of a run as ended: it is no longer offered, but can be found.

@@ -9,6 +9,7 @@ use crate::monitor::Cancelled;
 use crate::registration::RegistrationError;
 use crate::report::CardError;
 use crate::simplify::SimplifyError;
+use crate::text::{counted, grouped};
 
 /// Why a stage of the pipeline has no result.
 #[derive(Debug, thiserror::Error)]
@@ -121,6 +122,21 @@ pub enum PipelineError {
     OwnLayerRule {
         /// Id of the crash part.
         part: u64,
+    },
+    /// A result to compare with is of another mesh.
+    #[error(
+        "{path:?} is of another mesh: {} of {} with the same ids have other nodes; give a result on the crash \
+         part's own elements",
+        grouped(*n_other_nodes),
+        counted(*n_same_id, "element")
+    )]
+    OtherMesh {
+        /// The file.
+        path: PathBuf,
+        /// Its elements with ids of ours.
+        n_same_id: usize,
+        /// Those of them with other nodes.
+        n_other_nodes: usize,
     },
     /// Stresses of a part are read in element axes, which are not mapped.
     #[error(

@@ -116,11 +116,28 @@ impl Looks {
             requests.recv_timeout(pause)
         };
         match request {
-            Ok(files) => self.files = requests.try_iter().last().unwrap_or(files),
+            Ok(files) => self.take(requests.try_iter().last().unwrap_or(files)),
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => return false,
         }
         true
+    }
+
+    /// Other files, or the same ones as they were read anew: of these nothing is known.
+    fn take(&mut self, files: Vec<ReadFile>) {
+        let before: BTreeMap<&Path, _> = self
+            .files
+            .iter()
+            .map(|file| (file.path.as_path(), &file.hash))
+            .collect();
+        for file in &files {
+            let path = file.path.as_path();
+            if before.get(path).is_some_and(|hash| **hash != file.hash) {
+                self.known.remove(path);
+                self.new.remove(path);
+            }
+        }
+        self.files = files;
     }
 
     /// Looks at each file once; the changed ones, if they are others than those told last.

@@ -10,16 +10,14 @@ pub use fit::{Fit, Presence};
 
 use super::error::unless_cancelled;
 use super::joined_parts::joined_parts;
-use super::likeness::{
-    AS_ALIKE, Moments, Signature, joined_signatures, moments_of_parts, more_alike,
-};
+use super::likeness::{AS_ALIKE, Moments, Signature, joined_signatures, moments_of_parts};
 use super::load::{LoadedPart, prepare};
 use super::match_parts::{MatchRecipe, MatchRun, match_parts};
 use super::{PipelineError, millis_since};
 use crate::assess::Verdict;
 use crate::formats::Selection;
+use crate::geometry::Similarity;
 use crate::geometry::chunks::for_chunks;
-use crate::geometry::{Point3, Similarity, Vector3};
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{Hand, UnitGuess, guess_unit};
 use crate::role::PerRole;
@@ -77,9 +75,9 @@ impl FoundParts {
 ///
 /// The chosen parts of `parts.crash` are compared by area, spread and thickness, one by one, those that share nodes
 /// together, and all together, and the most alike of these choices are matched, each by itself, until one is good.
-/// Those that are as alike as that one are matched too. Where much of the stamped part lies on nothing, parts that lie there are taken
-/// in and all matched together. `current` is where the stamped part lies, for recipes that start there. A
-/// stop request ends it with the best so far. Fails only when cancelled.
+/// Those that are as alike as that one are matched too. Where much of the stamped part lies on nothing, parts that lie
+/// there are taken in and all matched together. `current` is where the stamped part lies, for recipes that start there.
+/// A stop request ends it with the best so far. Fails only when cancelled.
 pub fn find_parts(
     parts: PerRole<&LoadedPart>,
     recipe: &MatchRecipe,
@@ -180,20 +178,18 @@ fn not_among(taken: &[u64], mut rivals: Vec<u64>) -> Vec<u64> {
     rivals
 }
 
-/// True if one of several chosen crash parts, or some that share nodes, should be found first: alone they are more like
-/// the stamped part than all together are.
+/// True if one of several chosen crash parts, or some of them, should be found first: alone they are more like the
+/// stamped part than all together are, or the others have no shells.
 pub fn is_part_open(parts: PerRole<&LoadedPart>) -> bool {
     let n_chosen = parts.crash.chosen_part_ids().len();
-    if parts.stamped.chosen_part_ids().len() != 1 || n_chosen < 2 {
+    if n_chosen < 2 {
         return false;
     }
     let signatures = Signatures::of(parts, &Monitor::silent());
     let signatures = signatures.expect("nobody cancels a silent monitor");
-    let candidates = signatures.candidates().into_iter();
-    let (some, all): (Vec<_>, Vec<_>) = candidates.partition(|(_, ids)| ids.len() < n_chosen);
-    let all = all.first().map_or(0.0, |(likeness, _)| *likeness);
-    let some = some.into_iter().map(|(likeness, ids)| (ids, likeness));
-    !more_alike(some, all).is_empty()
+    let candidates = signatures.candidates();
+    let most_alike = candidates.first();
+    most_alike.is_some_and(|(_, ids)| ids.len() < n_chosen)
 }
 
 /// What every match of the search needs.
@@ -311,7 +307,7 @@ impl Task<'_> {
 
     /// The match on more parts, where these lie on what the found ones leave of the stamped part.
     fn with_further_parts(&self, found: Found) -> Result<Found, PipelineError> {
-        let further = further_parts(self.parts, &found);
+        let further = further_parts(self.parts, &found, self.monitor)?;
         if further.is_empty() || self.monitor.stop_requested() {
             return Ok(found);
         }
@@ -349,7 +345,7 @@ pub fn mirrored_twin(
     let (mut left, mut there) = (0.0, 0.0);
     for_chunks(mesh.n_triangles(), monitor, |range| {
         for triangle in range {
-            let centre = middle(&mesh.corners(triangle));
+            let centre = mesh.triangle_centroid(triangle);
             let [own, mirrored] = poses.each_ref().map(|(inverse, scale)| {
                 let hit = stamped
                     .bvh()
@@ -369,7 +365,8 @@ pub fn mirrored_twin(
 struct Signatures {
     /// Of the stamped part; `None` without area.
     stamped: Option<Signature>,
-    /// Of every chosen crash part alone, of those that share nodes together, and of all together where they are several.
+    /// Of every chosen crash part with shells alone, of those that share nodes together, and of all together where
+    /// they are several.
     crash: Vec<(Vec<u64>, Signature)>,
 }
 
@@ -403,10 +400,13 @@ impl Signatures {
             .collect();
         let thickness = |id| parts.crash.lengthened(*rows.get(&id)?);
         crash.extend(joined_signatures(&joined, &moments.crash, thickness));
-        if used.crash.len() > 1 {
-            let together = all_of(&used.crash, &moments.crash);
+        // Solids beside shells, such as adhesive, are no part of the sheet.
+        let mut with_shells = used.crash;
+        with_shells.retain(|id| moments.crash.contains_key(id));
+        if with_shells.len() > 1 {
+            let together = all_of(&with_shells, &moments.crash);
             if let Some(together) = together.signature(parts.crash.mean_thickness()) {
-                crash.push((used.crash, together));
+                crash.push((with_shells, together));
             }
         }
         Ok(Self { stamped, crash })
@@ -437,7 +437,11 @@ impl Signatures {
 }
 
 /// Parts of which more than half lies on what the found ones leave of the stamped part.
-fn further_parts(parts: PerRole<&LoadedPart>, found: &Found) -> Vec<u64> {
+fn further_parts(
+    parts: PerRole<&LoadedPart>,
+    found: &Found,
+    monitor: &Monitor,
+) -> Result<Vec<u64>, Cancelled> {
     let pose = found.run.crash_from_stamped;
     let (stamped, crash) = (&parts.stamped.surface, &found.part.surface);
     let near =
@@ -445,18 +449,17 @@ fn further_parts(parts: PerRole<&LoadedPart>, found: &Found) -> Vec<u64> {
     let mesh = stamped.mesh();
     let (mut area, mut left) = (0.0, 0.0);
     let mut is_left = vec![false; mesh.n_triangles()];
-    for (triangle, is_left) in is_left.iter_mut().enumerate() {
-        let centre = pose.apply(&middle(&mesh.corners(triangle)));
-        *is_left = crash.bvh().closest(&centre, near, None, None).is_none();
-        area += mesh.triangle_area(triangle);
-        left += if *is_left {
-            mesh.triangle_area(triangle)
-        } else {
-            0.0
-        };
-    }
+    for_chunks(mesh.n_triangles(), monitor, |range| {
+        for triangle in range {
+            let centre = pose.apply(&mesh.triangle_centroid(triangle));
+            let own = mesh.triangle_area(triangle);
+            is_left[triangle] = crash.bvh().closest(&centre, near, None, None).is_none();
+            area += own;
+            left += if is_left[triangle] { own } else { 0.0 };
+        }
+    })?;
     if left <= UNCOVERED * area {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let all = parts.crash;
     let stamped_from_crash = pose.inverse();
@@ -471,7 +474,7 @@ fn further_parts(parts: PerRole<&LoadedPart>, found: &Found) -> Vec<u64> {
         for &triangle in triangles.iter().step_by(step) {
             let own = all.mesh.triangle_area(triangle);
             area += own;
-            let centre = stamped_from_crash.apply(&middle(&all.mesh.corners(triangle)));
+            let centre = stamped_from_crash.apply(&all.mesh.triangle_centroid(triangle));
             let hit = stamped
                 .bvh()
                 .closest(&centre, near / pose.scale, None, None);
@@ -481,18 +484,14 @@ fn further_parts(parts: PerRole<&LoadedPart>, found: &Found) -> Vec<u64> {
         }
         there > LIES_THERE * area
     };
-    let named = all.model.parts.iter().zip(&triangles_of);
-    named
-        .filter(|(part, triangles)| {
-            !triangles.is_empty() && !own.contains(&part.id) && lies_there(triangles)
-        })
-        .map(|(part, _)| part.id)
-        .collect()
-}
-
-fn middle(corners: &[Point3; 3]) -> Point3 {
-    let sum: Vector3 = corners.iter().map(|corner| corner.coords).sum();
-    Point3::from(sum / 3.0)
+    let mut further = Vec::new();
+    for (part, triangles) in all.model.parts.iter().zip(&triangles_of) {
+        monitor.check()?;
+        if !triangles.is_empty() && !own.contains(&part.id) && lies_there(triangles) {
+            further.push(part.id);
+        }
+    }
+    Ok(further)
 }
 
 #[cfg(test)]

@@ -289,10 +289,10 @@ pub fn forming_values(
         }
     } else {
         for stress in model.forming.stresses() {
-            let points = stress.points.iter().map(|point| {
-                let [xx, yy, zz, xy, yz, zx] = point.stress;
-                (point.t, [xx, yy, zz, xy, yz, zx, point.plastic_strain])
-            });
+            let points = stress
+                .points
+                .iter()
+                .map(|point| (point.t, point.state(1.0)));
             let number = |state: &_| value.of_state(state);
             let shown = weights.shown(points.collect(), (layer, value), number);
             put(stress.element_id, shown);

@@ -4,28 +4,36 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::formats::Model;
 
+/// Of more parts than this at one node only so many are looked at: they are no pieces of one sheet.
+const MOST_AT_NODE: usize = 16;
 /// Parts that share fewer nodes share no edge.
 const LEAST_SHARED: usize = 2;
 
-/// The groups of two or more of the `chosen` parts, but for all of them, that are joined along common nodes: all that hang
-/// together, and each two of more than two. Ids in ascending order. O(shells + groups).
+/// The groups of two or more of the `chosen` parts, but for all of them, that are joined along common nodes: all that
+/// hang together, and each two of more than two. Ids in ascending order. O(shells + groups).
 pub fn joined_parts(model: &Model, chosen: &BTreeSet<u64>) -> BTreeSet<Vec<u64>> {
     let is_chosen = model.parts.iter().map(|part| chosen.contains(&part.id));
     let is_chosen: Vec<bool> = is_chosen.collect();
     let mut first_at: Vec<Option<u32>> = vec![None; model.nodes.len()];
-    let mut shared: BTreeMap<(u32, u32), BTreeSet<u32>> = BTreeMap::new();
+    let mut further_at: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
     for shell in model.shells.iter().filter(|s| is_chosen[s.part as usize]) {
         for node in shell.nodes {
             let first = *first_at[node as usize].get_or_insert(shell.part);
             if first != shell.part {
-                let pair = (first.min(shell.part), first.max(shell.part));
-                shared.entry(pair).or_default().insert(node);
+                further_at.entry(node).or_default().insert(shell.part);
             }
         }
     }
-    let joined = shared
-        .into_iter()
-        .filter(|(_, nodes)| nodes.len() >= LEAST_SHARED);
+    let mut n_shared: BTreeMap<(u32, u32), usize> = BTreeMap::new();
+    for (node, mut parts) in further_at {
+        parts.extend(first_at[node as usize]);
+        for &a in parts.iter().take(MOST_AT_NODE) {
+            for &b in parts.range(a + 1..).take(MOST_AT_NODE) {
+                *n_shared.entry((a, b)).or_default() += 1;
+            }
+        }
+    }
+    let joined = n_shared.into_iter().filter(|(_, n)| *n >= LEAST_SHARED);
     let pairs: Vec<(u32, u32)> = joined.map(|(pair, _)| pair).collect();
     let mut groups = hanging_together(&pairs);
     groups.extend(pairs.iter().map(|&(a, b)| BTreeSet::from([a, b])));
@@ -106,6 +114,20 @@ mod tests {
         let groups = joined(&model, &[10, 20, 30, 40, 50]);
         let expected = [vec![10, 20], vec![10, 20, 30], vec![10, 30], vec![40, 50]];
         assert_eq!(groups, expected);
+        // Of three parts at an edge each two share it, in any order.
+        let mut at_an_edge = row(&[1, 2, 3], &[]);
+        at_an_edge.shells[2].nodes = [2, 6, 7, 3];
+        let each_two = [vec![1, 2], vec![1, 3], vec![2, 3]];
+        assert_eq!(
+            joined(&at_an_edge, &[1, 2, 3, 9]),
+            [vec![1, 2], vec![1, 2, 3], vec![1, 3], vec![2, 3]]
+        );
+        at_an_edge.shells.rotate_left(1);
+        assert!(
+            each_two
+                .iter()
+                .all(|two| joined(&at_an_edge, &[1, 2, 3, 9]).contains(two))
+        );
         // Parts that meet at one node share no edge.
         let mut at_a_corner = row(&[1, 2, 3], &[0, 1]);
         at_a_corner.shells[1].nodes[0] = 3;

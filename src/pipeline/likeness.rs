@@ -14,7 +14,7 @@ use crate::monitor::{Cancelled, Monitor};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moments {
     area: f64,
-    /// Integral of the position, about the origin of the file.
+    /// Integral of the position, about the first node of the model.
     first: Vector3,
     /// Integral of the position times its transpose.
     second: Matrix3,
@@ -84,7 +84,7 @@ pub fn moments_of_parts(
 ) -> Result<BTreeMap<u64, Moments>, Cancelled> {
     let mut moments = vec![Moments::default(); model.parts.len()];
     let positions = model.nodes.positions();
-    // About a corner of the model, so that far coordinates take no digits from small parts.
+    // About a node of the model, so that far coordinates take no digits from small parts.
     let origin = positions.first().copied().unwrap_or_default();
     for_chunks(model.shells.len(), monitor, |range| {
         for shell in &model.shells[range] {
@@ -134,8 +134,8 @@ pub fn joined_signatures(
     joined.iter().filter_map(signature).collect()
 }
 
-/// Of the likenesses of several choices of parts to another part, the most alike choice and those that are about as alike,
-/// in their order, if each is more like it than all parts `together` are.
+/// Of the likenesses of several choices of parts to another part, the most alike choice and those that are about as
+/// alike, in their order, if each is more like it than all parts `together` are.
 pub fn more_alike<C: Ord>(of_choices: impl IntoIterator<Item = (C, f64)>, together: f64) -> Vec<C> {
     let least = ALIKE.max(together);
     let of_choices = of_choices.into_iter();

@@ -2,7 +2,7 @@
 //!
 //! [`umeyama`] solves paired points in closed form. Everything else is an iteration (`icp`) with
 //! three separate choices: what a point is paired with ([`PairWith`]), which pairs are kept
-//! ([`Selection`]) and what is minimised ([`Metric`], [`Motion`]). ICP, Trimmed ICP and Fractional
+//! ([`PairSelection`]) and what is minimised ([`Metric`], [`Motion`]). ICP, Trimmed ICP and Fractional
 //! ICP are such choices; [`Method`] names them. Because each run ends in a local minimum, many
 //! first poses ([`starts`]) run on few points; the best distinct ones are refined, compared from
 //! both sides, and the winner is refined on the full meshes (`multi_start`, [`match_surfaces`]).
@@ -28,7 +28,7 @@ pub use agreement::{Extent, StartGroup, group_starts, same_pose};
 pub(crate) use closed_form::fit_pairs;
 pub use closed_form::{Motion, PairFit, umeyama};
 pub use error::RegistrationError;
-pub use icp::{Floor, Metric, PairWith, RejectRules, Selection, Stage, Termination};
+pub use icp::{Floor, Metric, PairSelection, PairWith, RejectRules, Stage, Termination};
 pub use input::MatchInput;
 pub use match_surfaces::match_surfaces;
 pub use multi_start::starts;

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::RegistrationError;
 use super::closed_form::Motion;
-use super::icp::{Floor, Metric, PairWith, Selection};
+use super::icp::{Floor, Metric, PairSelection, PairWith};
 use super::multi_start::starts::{StartMethod, StartSettings};
 
 /// The methods by name; each is a choice of pairs, selection, metric and search.
@@ -76,7 +76,7 @@ pub struct MatchSettings {
     /// What a data point is paired with.
     pub pair_with: PairWith,
     /// Which pairs are kept.
-    pub selection: Selection,
+    pub selection: PairSelection,
     /// What is minimised.
     pub metric: Metric,
     /// What may move.
@@ -118,7 +118,7 @@ impl Default for MatchSettings {
         Self {
             method: Method::Fractional,
             pair_with: PairWith::Triangle,
-            selection: Selection::default(),
+            selection: PairSelection::default(),
             metric: Metric::Symmetric,
             motion: Motion::Rigid,
             hand: Hand::Same,
@@ -148,22 +148,22 @@ impl MatchSettings {
         match method {
             Method::Umeyama | Method::Fractional => base,
             Method::Icp => Self {
-                selection: Selection::All,
+                selection: PairSelection::All,
                 ..base
             },
             Method::Trimmed => Self {
-                selection: Selection::Trimmed {
-                    overlap: Selection::USUAL_OVERLAP,
+                selection: PairSelection::Trimmed {
+                    overlap: PairSelection::USUAL_OVERLAP,
                 },
                 ..base
             },
             Method::TrimmedSearch => Self {
-                selection: Selection::TrimmedSearch,
+                selection: PairSelection::TrimmedSearch,
                 ..base
             },
             Method::Paper => Self {
                 pair_with: PairWith::Node,
-                selection: Selection::Fractional {
+                selection: PairSelection::Fractional {
                     lambda: 0.95,
                     floor: Floor::None,
                 },
@@ -196,14 +196,14 @@ impl MatchSettings {
             }
         };
         match self.selection {
-            Selection::Trimmed { overlap } => within("the overlap", overlap, limits::OVERLAP)?,
-            Selection::Fractional { lambda, floor } => {
+            PairSelection::Trimmed { overlap } => within("the overlap", overlap, limits::OVERLAP)?,
+            PairSelection::Fractional { lambda, floor } => {
                 within("λ", lambda, limits::LAMBDA)?;
                 if let Floor::Length(length) = floor {
                     within("the floor", length, limits::LENGTH)?;
                 }
             }
-            Selection::All | Selection::TrimmedSearch => {}
+            PairSelection::All | PairSelection::TrimmedSearch => {}
         }
         within("the allowance", self.allowance, limits::LENGTH)?;
         within("the shape tolerance", self.shape_tolerance, limits::LENGTH)?;

@@ -111,8 +111,8 @@ impl Surface {
         })
     }
 
-    /// A mesh with the vertices of the nodes as they were given. `of_edges` finds what depends on the edges of the mesh, given the area vectors of its triangles: its border and
-    /// its chordal error.
+    /// A mesh with the vertices of the nodes as they were given. `of_edges` finds what depends on the edges of the
+    /// mesh, given the area vectors of its triangles: its border and its chordal error.
     fn assemble<F>(
         (mesh, given): (TriMesh, Vec<u32>),
         side: &'static str,

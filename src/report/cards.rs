@@ -85,7 +85,7 @@ pub struct IdOffsets {
 pub struct CardOptions {
     /// Name of the stamped file as the deck shall call it, at most 236 columns.
     pub file_name: String,
-    /// Who receives the forming results.
+    /// Who receives the forming results; [`CardForm::IncludeTransform`] does not name it.
     pub receiver: Receiver,
     /// Search radius RMAX in model units, from the measured deviation; rounded up.
     pub search_radius: f64,

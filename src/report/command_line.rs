@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use crate::formats::{ReadOptions, Selection as PartSelection};
+use crate::formats::{ReadOptions, Selection};
 use crate::geometry::Similarity;
 use crate::mapping::{MapOptions, RuleKind};
 use crate::registration::{MatchSettings, StartMethod};
@@ -19,7 +19,7 @@ pub struct CommandSide<'a> {
     /// Path of the file.
     pub path: &'a Path,
     /// Parts that are used of it; `None` leaves the choice to the program.
-    pub selection: Option<&'a PartSelection>,
+    pub selection: Option<&'a Selection>,
     /// Its lengths are multiplied by this.
     pub length_factor: f64,
     /// Its units, where the user set them.
@@ -121,7 +121,7 @@ impl MapCommandLine<'_> {
             words.0.push(file_word(side.path));
         }
         let parts = self.of_each_stamped(|side| {
-            let usual = PartSelection::Sheet;
+            let usual = Selection::Sheet;
             side.selection.unwrap_or(&usual).typed()
         });
         let factors = self.of_each_stamped(|side| exact(side.length_factor));
@@ -257,7 +257,7 @@ impl Words {
 
     fn side(&mut self, role: Role, side: &CommandSide<'_>) {
         // Where none are named, the crash parts are found, and of the stamped file the sheet is taken.
-        let is_usual = role == Role::Stamped && side.selection == Some(&PartSelection::Sheet);
+        let is_usual = role == Role::Stamped && side.selection == Some(&Selection::Sheet);
         let role = role.word();
         if let Some(parts) = side.selection.filter(|_| !is_usual) {
             self.option(&format!("{role}-part"), parts.typed());
@@ -331,11 +331,11 @@ mod tests {
             length_factor,
             units: None,
         };
-        let parts = PartSelection::Parts(vec![2001, 2002]);
+        let parts = Selection::Parts(vec![2001, 2002]);
         let command = CommandLine {
             sides: PerRole {
                 crash: side("my car.k", &parts, 1.0),
-                stamped: side("-it's.dynain", &PartSelection::Sheet, 25.4),
+                stamped: side("-it's.dynain", &Selection::Sheet, 25.4),
             },
             read: &ReadOptions::default(),
             settings,
@@ -359,7 +359,7 @@ mod tests {
     #[test]
     fn the_limit_of_reading_is_said_where_it_is_not_the_usual_one() {
         let read = ReadOptions::default().with_limit(12.5);
-        let selection = PartSelection::Sheet;
+        let selection = Selection::Sheet;
         let side = |path| CommandSide {
             path: Path::new(path),
             selection: Some(&selection),

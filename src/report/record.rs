@@ -11,7 +11,7 @@ use crate::assess::{
 };
 use crate::formats::FileHash;
 use crate::geometry::Point3;
-use crate::registration::{MatchOutcome, Method, Selection, Side, StartMethod, StartRecord};
+use crate::registration::{MatchOutcome, Method, PairSelection, Side, StartMethod, StartRecord};
 use crate::role::{PerRole, Role};
 use crate::settings::{MatchRecipe, SETTINGS};
 use crate::text::Lengths;
@@ -398,7 +398,7 @@ impl Parameters {
             settings.starts.method,
             StartMethod::SurfaceNormals | StartMethod::All
         );
-        let has_floor = matches!(settings.selection, Selection::Fractional { .. });
+        let has_floor = matches!(settings.selection, PairSelection::Fractional { .. });
         Self {
             settings: SettingsRecord(context.recipe.clone()),
             floor: has_floor.then_some(outcome.floor),

@@ -3,7 +3,7 @@
 use super::{Choice, ChoiceWords};
 use crate::mapping::{MapMethod, NormalSense, Overlap};
 use crate::registration::{
-    DataSide, Floor, Hand, Method, Metric, Motion, PairWith, Search, Selection, StartMethod,
+    DataSide, Floor, Hand, Method, Metric, Motion, PairSelection, PairWith, Search, StartMethod,
 };
 
 /// One table: the value, with the parameters it has in menus, then name, label, help.
@@ -71,14 +71,14 @@ choices! { PairWith:
         "Pairs nodes with points on triangles; accurate on any mesh";
 }
 
-choices! { Selection:
+choices! { PairSelection:
     All => "all", "All pairs",
         "Keeps every pair; for parts that cover each other completely";
-    Trimmed { overlap: Selection::USUAL_OVERLAP } => "trimmed", "Trimmed",
+    Trimmed { overlap: PairSelection::USUAL_OVERLAP } => "trimmed", "Trimmed",
         "Keeps a given fraction of the pairs, the closest first";
     TrimmedSearch => "trimmed-search", "Trimmed, overlap estimated",
         "As trimmed, with the fraction estimated in each iteration";
-    Fractional { lambda: Selection::USUAL_LAMBDA, floor: Floor::Auto } => "fractional", "Fractional",
+    Fractional { lambda: PairSelection::USUAL_LAMBDA, floor: Floor::Auto } => "fractional", "Fractional",
         "Keeps the fraction with the least fractional RMS distance; the default";
 }
 

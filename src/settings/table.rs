@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use super::value::{Field as _, at};
 use super::{Access, Choice as _, Domain, Group, MatchRecipe, Setting, Unit};
 use crate::registration::{
-    DataSide, Hand, Method, Metric, Motion, PairWith, Search, Selection, StartMethod, limits,
+    DataSide, Hand, Method, Metric, Motion, PairSelection, PairWith, Search, StartMethod, limits,
 };
 
 /// Access to a parameter of one kind of pair selection.
@@ -13,11 +13,11 @@ macro_rules! of_selection {
     ($kind:ident, $field:ident) => {
         Access {
             get: |recipe| match &recipe.settings.selection {
-                Selection::$kind { $field, .. } => Some($field.value()),
+                PairSelection::$kind { $field, .. } => Some($field.value()),
                 _ => None,
             },
             set: |recipe, value| match &mut recipe.settings.selection {
-                Selection::$kind { $field, .. } => $field.put(value),
+                PairSelection::$kind { $field, .. } => $field.put(value),
                 _ => false,
             },
             unused: |_| None,
@@ -73,7 +73,8 @@ pub static SETTINGS: [Setting; 26] = [
         option: "wide-search",
         key: "wide_search",
         label: "Wide search",
-        help: "Also search all rotations, both normal directions and all places, with the surface normals of patches aligned; the best are further starts",
+        help: "Also search all rotations, both normal directions and all places, with the surface normals of patches \
+            aligned; the best are further starts",
         group: Group::Starts,
         domain: Domain::Switch,
         access: at!(settings.starts.wide_search),
@@ -83,7 +84,8 @@ pub static SETTINGS: [Setting; 26] = [
         option: "start-pose",
         key: "start_poses",
         label: "Given poses",
-        help: "A start pose (crash from stamped): a text file, or its numbers, 16 by rows. Several poses are all tried. A rigid match keeps the scale of its start",
+        help: "A start pose (crash from stamped): a text file, or its numbers, 16 by rows. Several poses are all \
+            tried. A rigid match keeps the scale of its start",
         group: Group::Starts,
         domain: Domain::Poses,
         access: at!(settings.starts.poses),
@@ -115,7 +117,7 @@ pub static SETTINGS: [Setting; 26] = [
         label: "Pair selection",
         help: "Which pairs are kept",
         group: Group::Correspondences,
-        domain: Domain::Choice(Selection::all_words),
+        domain: Domain::Choice(PairSelection::all_words),
         access: at!(settings.selection),
     },
     Setting {
@@ -213,7 +215,8 @@ pub static SETTINGS: [Setting; 26] = [
         option: "remove-offset",
         key: "remove_offset",
         label: "Remove offset",
-        help: "Take an offset of the sheets along their normals, as between skin and mid-surface, out of the pose where it can be distinguished from a shift",
+        help: "Take an offset of the sheets along their normals, as between skin and mid-surface, out of the pose \
+            where it can be distinguished from a shift",
         group: Group::Correspondences,
         domain: Domain::Switch,
         access: at!(settings.remove_offset),

@@ -9,8 +9,8 @@ use crate::geometry::{Point3, TriMesh};
 use crate::mapping::{MapMethod, MapOptions, NormalSense, Overlap};
 use crate::monitor::Monitor;
 use crate::registration::{
-    DataSide, Hand, MatchInput, MatchSettings, Method, Metric, Motion, PairWith, RegistrationError,
-    Search, Selection, StartMethod, Surface, match_surfaces,
+    DataSide, Hand, MatchInput, MatchSettings, Method, Metric, Motion, PairSelection, PairWith,
+    RegistrationError, Search, StartMethod, Surface, match_surfaces,
 };
 use crate::text::Lengths;
 
@@ -37,7 +37,7 @@ fn every_field_has_exactly_one_row() {
     let recipe = serde_json::to_value(MatchRecipe::default()).unwrap();
     leaves(&recipe, "", &mut fields);
     // The parameters of each kind of pair selection are settings of their own.
-    for selection in Selection::ALL {
+    for selection in PairSelection::ALL {
         let stored = serde_json::to_value(selection).unwrap();
         let kinds = stored.as_object().into_iter().flatten();
         for parameter in kinds.flat_map(|(_, inner)| inner.as_object().unwrap().keys()) {
@@ -109,7 +109,7 @@ fn choices_are_found_by_name() {
     check_choice::<StartMethod>();
     check_choice::<DataSide>();
     check_choice::<PairWith>();
-    check_choice::<Selection>();
+    check_choice::<PairSelection>();
     check_choice::<Metric>();
     check_choice::<Motion>();
     check_choice::<Hand>();

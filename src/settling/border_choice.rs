@@ -55,8 +55,8 @@ const MORE_HELD: f64 = 0.005;
 const BY_CHANCE: f64 = 0.15;
 /// So much less of the borders where they belong makes a pose count as twice as bad.
 const TWICE_AS_BAD: f64 = 0.05;
-/// Where less than this share of the result's own borders beside like ones lies where it belongs, the parts were trimmed
-/// differently, …
+/// Where less than this share of the result's own borders beside like ones lies where it belongs, the parts were
+/// trimmed differently, …
 const TRIMMED_ALIKE: f64 = 0.9;
 /// … and a pose under which at least this share of all borders does is as likely by its outlines.
 const HELD_BY_OTHERS: f64 = 0.4;
@@ -291,9 +291,9 @@ impl Refined {
         self.met >= AS_MUCH * other.met && self.gap <= most
     }
 
-    /// Whether the outlines do not distinguish this pose from the winner: they lie apart in places under the winner too,
-    /// where the parts were trimmed differently, enough of the borders hold this pose, and no hole lies much farther
-    /// from its counterpart than under the winner.
+    /// Whether the outlines do not distinguish this pose from the winner: they lie apart in places under the winner
+    /// too, where the parts were trimmed differently, enough of the borders hold this pose, and no hole lies much
+    /// farther from its counterpart than under the winner.
     fn is_held_as_well(&self, winner: &Self, within: f64) -> bool {
         // Springback moves a hole, and not far.
         let moved = winner.worst_hole.min(MUCH_FARTHER * within);
@@ -373,8 +373,13 @@ impl<'a> PoseComparison<'a> {
                 && other.worst_hole > self.remainder();
             let more = result.held + result.grain.max(MORE_HELD);
             let is_chance = other.n_holes == 0 && other.held <= BY_CHANCE;
-            let holds_more =
-                other.held > more && !is_chance && !misplaces_holes && !beats(result, other);
+            // A piece can always be slid along a profile until one of its ends lies on an outline. Where it then covers
+            // holes, and where it was none, the two contradict each other.
+            let covers_holes = other.n_holes <= result.n_holes
+                && other.missing > result.missing + result.grain
+                && other.held < SURELY_HELD;
+            let is_no_evidence = is_chance || covers_holes || misplaces_holes;
+            let holds_more = other.held > more && !is_no_evidence && !beats(result, other);
             !is_close || holds_more || beats(other, result)
         };
         let better: Vec<&Refined> = rivals.iter().filter(|other| is_better(other)).collect();

@@ -24,9 +24,9 @@ const NEARLY_SHARED: f64 = 0.8;
 const LEAST_PIECE: f64 = 0.35;
 /// Lengths of so many tolerances are differences whatever the facets are and however the part is bent.
 const CLEARLY: f64 = 2.0;
-/// A piece of the smaller part lies much closer to the other part than the whole does under another pose if it lies apart
-/// by at most this share of what a bend that moves the whole so far apart leaves in the piece. A bend grows with the
-/// square of the length.
+/// A piece of the smaller part lies much closer to the other part than the whole does under another pose if it lies
+/// apart by at most this share of what a bend that moves the whole so far apart leaves in the piece. A bend grows with
+/// the square of the length.
 const MUCH_CLOSER: f64 = 0.5;
 /// Outlines lie together all round where this share of the smaller part's borders does.
 const ALL_ROUND: f64 = 0.9;
@@ -219,8 +219,8 @@ impl Candidate {
     /// features may be shifted by one of them.
     pub(super) fn is_equal_partial_fit_beside(&self, other: &Self, distances: &Distances) -> bool {
         let is_as_close = |own: f64, other: f64| own <= distances.as_close_as(UNREMARKABLE, other);
-        // A piece of a piece is no other part for being small, and the more of a part that was not pierced yet meets the
-        // other, the more holes of that lie alone.
+        // A piece of a piece is no other part for being small, and the more of a part that was not pierced yet meets
+        // the other, the more holes of that lie alone.
         let n_differences = self.n_differences - usize::from(self.hardly_meets);
         let is_unpierced = self.n_holes.max(other.n_holes) == 0;
         self.only_overhangs
@@ -262,8 +262,8 @@ impl Candidate {
             && self.lies_much_closer_elsewhere_than(other, noise)
     }
 
-    /// Whether a piece of each part lies on the other here and nothing differs but what a bend explains, while each has a
-    /// piece that the other lacks, and more of the parts meets under another pose, under which their shapes differ or
+    /// Whether a piece of each part lies on the other here and nothing differs but what a bend explains, while each has
+    /// a piece that the other lacks, and more of the parts meets under another pose, under which their shapes differ or
     /// their surfaces lie much farther apart.
     pub(super) fn fits_as_a_piece_beside(&self, other: &Self, noise: f64) -> bool {
         let n_differences = self.n_differences - usize::from(self.hardly_meets);

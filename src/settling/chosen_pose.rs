@@ -40,8 +40,8 @@ impl ChosenPose {
         outcome.alternatives = self.alternatives;
     }
 
-    /// Of the poses that were judged beside the result of `outcome`, the first in `order` of those that `is_better` than
-    /// it. `None` where none is.
+    /// Of the poses that were judged beside the result of `outcome`, the first in `order` of those that `is_better`
+    /// than it. `None` where none is.
     pub(super) fn best_of(
         Judged {
             result,

@@ -91,8 +91,8 @@ impl<'a> PairContext<'a> {
         shape_statement(self.surfaces(), pose, self.settings, Outlines::LeftOut)
     }
 
-    /// A pose moved step by step: `next` gives the next pose, and the motion that is none any more. It ends there, where
-    /// the parts meet nowhere or there is no next pose, or after so many steps.
+    /// A pose moved step by step: `next` gives the next pose, and the motion that is none any more. It ends there,
+    /// where the parts meet nowhere or there is no next pose, or after so many steps.
     /// O(steps · (border edges + nodes · log triangles)).
     pub(super) fn stepped(
         &self,

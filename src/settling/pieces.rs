@@ -66,8 +66,8 @@ pub fn placed_by_pieces(
     Ok(best)
 }
 
-/// The distinct poses of pieces under which the parts, which meet as `own` under the result, may lie closer, the closest
-/// for their size first.
+/// The distinct poses of pieces under which the parts, which meet as `own` under the result, may lie closer, the
+/// closest for their size first.
 fn worth_refining(
     context: &PairContext<'_>,
     few: &FewPlaces<'_>,

@@ -56,7 +56,8 @@ fn decimate_by_rounds(
     let n_start = mesh.triangles.len();
     let to_do = n_start.saturating_sub(max_triangles) as u64;
     let report = |n_left: usize| {
-        let done = (n_start - n_left) as u64;
+        // Regions side by side may together go further than was asked for; of that nothing is kept.
+        let done = ((n_start - n_left) as u64).min(to_do);
         monitor.progress("simplify", done, Some(to_do));
     };
     let mut collapses = Vec::new();

@@ -44,8 +44,8 @@ pub fn menu<R>(
     shown
 }
 
-/// Gives the keyboard to the choice that holds, in the frame in which its menu opens, and closes the menu after a choice.
-/// Called for every choice, with whether it holds.
+/// Gives the keyboard to the choice that holds, in the frame in which its menu opens, and closes the menu after a
+/// choice. Called for every choice, with whether it holds.
 pub fn chosen(ui: &Ui, holds: bool, choice: Response) -> Response {
     let opened = ui.scope_id().with("opened");
     let pass = ui.ctx().cumulative_pass_nr();

@@ -1,5 +1,6 @@
 //! What lies over the window: help sheet, command search, preferences, messages, about.
 
+use egui::style::ScrollStyle;
 use egui::{Align, Layout, Modal, RichText, ScrollArea, Ui, vec2};
 
 use super::focus;
@@ -110,7 +111,9 @@ fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.set_width(560.0_f32.min(ui.ctx().content_rect().width() - 96.0));
     title(ui, "Preferences", Some(commands));
     let mut settings: Settings = state.settings.clone();
-    let room = ui.ctx().content_rect().height() - 200.0;
+    let room = ui.ctx().content_rect().height() - MARGIN.y;
+    // A bar that floats is not seen before the pointer is there, and the sheet would look complete.
+    ui.spacing_mut().scroll = ScrollStyle::solid();
     let sheet = ScrollArea::vertical()
         .max_height(room)
         .min_scrolled_height(room);

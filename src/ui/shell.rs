@@ -14,8 +14,8 @@ use super::preferences::{Preferences, UserFiles, WindowPlace};
 use super::viewport::Viewports;
 use super::{focus, overlays, panels, system_fonts, theme, toasts};
 use crate::app::{
-    AppState, Clock, Command, Document, Effect, FileCommand, NoticeCommand, NoticeLevel,
-    PictureChoice, PictureSize, ProjectCommand, Settings, StartupOptions, Theme,
+    AppState, Clock, Command, Effect, FileCommand, Kept, NoticeCommand, NoticeLevel, PictureChoice,
+    PictureSize, ProjectCommand, Settings, StartupOptions, Theme,
 };
 use crate::jobs::{JobEvent, JobStage, Live, PipelineRunner, Worker};
 use crate::pipeline::autosave::{Autosave, AutosaveEvent};
@@ -92,7 +92,7 @@ pub struct Shell {
     viewports: Viewports,
     dialogs: Dialogs,
     preferences: PreferencesFile,
-    autosave: Autosave<Box<Document>>,
+    autosave: Autosave<Box<Kept>>,
     watch: FileWatch,
     /// The parts whose files are watched.
     watched: Vec<u64>,
@@ -266,8 +266,8 @@ impl Shell {
                 path,
                 replaces,
                 project,
-                document,
-            } => self.autosave.save(path, replaces, project, document),
+                kept,
+            } => self.autosave.save(path, replaces, project, kept),
             Effect::Autosave(project) => self.autosave.autosave(project),
             Effect::DismissRecovery => self.autosave.dismiss_recovery(),
             Effect::AskPicture { choice, path } => self.dialogs.ask_picture(choice, path, ctx),
@@ -540,10 +540,10 @@ impl eframe::App for Shell {
 }
 
 /// What follows from what was saved.
-fn from_autosave(event: AutosaveEvent<Box<Document>>) -> Vec<Command> {
+fn from_autosave(event: AutosaveEvent<Box<Kept>>) -> Vec<Command> {
     match event {
-        AutosaveEvent::Saved(path, saved_at, document) => {
-            vec![ProjectCommand::Written(path, saved_at, document).into()]
+        AutosaveEvent::Saved(path, saved_at, kept) => {
+            vec![ProjectCommand::Written(path, saved_at, kept).into()]
         }
         AutosaveEvent::SaveFailed(reason) => {
             let is_elsewhere = false;

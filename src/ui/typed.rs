@@ -118,8 +118,9 @@ struct Refused {
 }
 
 /// Adds a field of a value that is read when it is left: a text that `read` refuses changes nothing and frames the
-/// field until it is edited again, it or another field takes a value, the value changes, or Escape is pressed. Why it was refused is said below the field,
-/// over what stands there, until the pointer is pressed, and after that where the field is pointed at.
+/// field until it is edited again, it or another field takes a value, the value changes, or Escape is pressed. Why it
+/// was refused is said below the field, over what stands there, until the pointer is pressed, and after that where the
+/// field is pointed at.
 pub fn told_field(
     ui: &mut Ui,
     name: &str,

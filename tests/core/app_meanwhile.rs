@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 
 use shapematch::app::*;
 use shapematch::geometry::Similarity;
@@ -313,4 +314,53 @@ fn reducing_again_after_a_reload_is_an_undo_step() {
     window.apply(reduce);
     assert!(window.part(Role::Crash).level.is_some());
     assert!(is_reduced || window.state.history.n_done() == n_done + 1);
+}
+
+/// The part that is left has its own window again.
+#[test]
+fn closing_a_part_ends_move_over() {
+    let mut window = Window::with_both();
+    window.act(Action::ToggleMoveOver);
+    assert!(window.state.view.is_moved_over);
+    window.apply(FileCommand::Close(Role::Crash));
+    assert!(!window.state.view.is_moved_over);
+}
+
+/// Escape takes back the move by keys alone.
+#[test]
+fn another_move_ends_the_move_by_keys() {
+    let mut window = Window::with_both();
+    window.apply(MoveCommand::Begin {
+        kind: MotionKind::Move,
+        frame: window.state.move_frame().unwrap(),
+    });
+    window.act(Action::FlipX);
+    assert!(window.state.moving.tool.is_none());
+    let flipped = window.pose();
+    window.apply(Command::Escape);
+    assert_eq!(window.pose(), flipped);
+}
+
+/// What was said about a match is about other parts then.
+#[test]
+fn messages_about_a_match_end_with_its_parts() {
+    let mut window = Window::with_both();
+    window.act(Action::MatchOrStop);
+    let text = "the pose needs a look".to_owned();
+    window.state.log.now += Duration::from_secs(1);
+    let showing = Showing {
+        now: window.state.log.now,
+        is_muted: false,
+        about: Some(LogStep::Match),
+    };
+    window
+        .state
+        .log
+        .notices
+        .push(NoticeLevel::Warning, text.clone(), showing);
+    let is_toast = |window: &Window| window.state.log.notices.toasts().any(|n| n.text == text);
+    assert!(is_toast(&window));
+    window.state.log.now += Duration::from_secs(1);
+    window.apply(FileCommand::Close(Role::Crash));
+    assert!(!is_toast(&window));
 }

@@ -679,7 +679,8 @@ fn a_bend_does_not_push_a_curved_strip_along_itself() {
 
 #[test]
 fn a_twist_does_not_turn_a_bowed_panel_about_its_normal() {
-    // Turned by five degrees, the bow is the twist: the panel fits but for three pads, which the closest pairs leave out.
+    // Turned by five degrees, the bow is the twist: the panel fits but for three pads, which the closest pairs leave
+    // out.
     let panel = |n: u32, wider: f64, twist: f64| {
         sheet(n, |u, v| {
             let (x, y) = ((600.0 + wider) * (u - 0.5), (400.0 + wider) * (v - 0.5));
@@ -879,8 +880,8 @@ fn a_channel_whose_ends_coincide_is_as_likely_as_one_whose_walls_do() {
     );
 }
 
-/// `n` × `m` cells of 10 mm without those in holes, its right and upper ends cut off by these lengths; a hole is given by
-/// its first column and row and its width in cells.
+/// `n` × `m` cells of 10 mm without those in holes, its right and upper ends cut off by these lengths; a hole is given
+/// by its first column and row and its width in cells.
 fn holed(
     [n, m]: [u32; 2],
     cut_off: [f64; 2],

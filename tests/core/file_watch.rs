@@ -63,3 +63,17 @@ fn a_changed_file_is_told_and_a_touched_one_is_not() {
     watch.watch(Vec::new());
     assert_eq!(watch.wait_for_news(LONG), Some([].into()));
 }
+
+/// Saved and read again before the watch has looked: nothing is told.
+#[test]
+fn a_file_that_is_read_again_at_once_has_not_changed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("one.k");
+    std::fs::write(&path, "first").unwrap();
+    let watch = FileWatch::start(QUIET / 2, || {}).unwrap();
+    watch.watch(vec![read(&path)]);
+    assert_eq!(watch.wait_for_news(3 * QUIET), None, "nothing happened");
+    std::fs::write(&path, "other").unwrap();
+    watch.watch(vec![read(&path)]);
+    assert_eq!(watch.wait_for_news(3 * QUIET), None, "it was read again");
+}

@@ -53,6 +53,24 @@ fn the_deviation_is_measured_when_something_shows_it_and_follows_quick_moves() {
     assert!(window.state.deviation_stats().unwrap().1.max.abs() < 1e-9);
 }
 
+/// What is hidden does not catch the pointer.
+#[test]
+fn landmarks_of_hidden_parts_are_not_shown() {
+    let mut window = Window::with_both();
+    let n_shown = |window: &Window| {
+        let landmarks = window.part(Role::Crash).shown_landmarks();
+        landmarks
+            .map(|of_part| of_part.corners.len())
+            .sum::<usize>()
+    };
+    assert!(n_shown(&window) > 0);
+    for id in window.part(Role::Crash).facts.used.clone() {
+        let role = Role::Crash;
+        window.apply(PartCommand::SetVisible(PartRef { role, id }, false));
+    }
+    assert_eq!(n_shown(&window), 0);
+}
+
 #[test]
 fn a_map_of_the_match_that_is_turned_off_brings_the_colours_before_it_back() {
     let mut window = Window::with_both();
@@ -170,21 +188,24 @@ fn nothing_is_measured_that_nobody_sees() {
 fn colours_are_symmetric_round_and_neutral_within_the_tolerance() {
     let mut window = with_map();
     nudge(&mut window, 0.7);
-    let comparison = window.state.comparison().unwrap();
-    let scale = Coloring::default().deviation_scale(comparison);
+    let scale_of = |window: &mut Window, coloring: Coloring| {
+        window.state.view.display.coloring = coloring;
+        window.state.deviation_scale().unwrap()
+    };
+    let scale = scale_of(&mut window, Coloring::default());
     assert_eq!((scale.min, scale.max, scale.tolerance), (-1.0, 1.0, 0.2));
     let narrow = Coloring {
         limits: Some([-0.4, 0.4]),
         ..Coloring::default()
     };
-    let scale = narrow.deviation_scale(comparison);
+    let scale = scale_of(&mut window, narrow);
     assert_eq!((scale.max, scale.tolerance), (0.4, 0.2), "same share");
     let typed = Coloring {
         limits: Some([-0.5, 2.0]),
         tolerance: Some(0.3),
         ..Coloring::default()
     };
-    let scale = typed.deviation_scale(comparison);
+    let scale = scale_of(&mut window, typed);
     assert_eq!((scale.min, scale.max, scale.tolerance), (-0.5, 2.0, 0.3));
 }
 
@@ -261,6 +282,38 @@ fn the_section_cuts_across_the_longest_side_and_steps_by_a_tenth_of_an_element()
         Some(turned),
         "it stays where it was"
     );
+}
+
+/// Shares and colours can be compared with those before the move, until the range is asked for.
+#[test]
+fn the_range_stays_while_a_matched_part_is_moved_by_hand() {
+    let mut window = with_map();
+    window.act(Action::MatchOrStop);
+    let range = |window: &Window| window.state.deviation_scale().unwrap().max;
+    let before = range(&window);
+    nudge(&mut window, 0.3);
+    assert_eq!(range(&window), before);
+    assert!(window.state.is_range_held());
+    window.apply(InspectCommand::FitRange);
+    assert_ne!(range(&window), before);
+    assert!(!window.state.is_range_held());
+}
+
+/// With the parts apart the plane goes through one of them, and anew where the parts were moved away from it.
+#[test]
+fn the_section_meets_a_part() {
+    let mut window = Window::with_both();
+    window.act(Action::ToggleMoveOver);
+    nudge(&mut window, 5000.0);
+    window.act(Action::ToggleSection);
+    let crash = window.part(Role::Crash).bounds();
+    let plane = window.state.inspect.section.shown().unwrap();
+    assert_eq!(plane.point, crash.center());
+    window.act(Action::ToggleSection);
+    let far = Plane::new(Point3::new(9e6, 0.0, 0.0), &Vector3::x());
+    window.state.inspect.section.plane = Some(far);
+    window.act(Action::ToggleSection);
+    assert_eq!(window.state.inspect.section.shown(), Some(plane));
 }
 
 #[test]

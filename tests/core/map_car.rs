@@ -1,5 +1,6 @@
 //! `shapematch map-car`, and `map` onto a whole model: which crash parts stamped parts belong to is found.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -437,6 +438,69 @@ fn of_doubtful_matches_the_one_that_fits_clearly_better_is_mapped_and_gives_its_
         "{own}"
     );
     assert_eq!(own["files"][0], "own.k");
+}
+
+/// The deck with the elements alone whose first corner is kept.
+fn cut(deck: &str, is_kept: impl Fn(f64) -> bool) -> String {
+    let field = |line: &str, at: usize| line[8 * at..8 * at + 8].trim().parse::<u32>().unwrap();
+    let (mut kept, mut section, mut x_of) = (String::new(), "", BTreeMap::new());
+    let mut lines = deck.lines();
+    while let Some(line) = lines.next() {
+        if line.starts_with('*') {
+            section = line;
+        } else if section == "*NODE" {
+            x_of.insert(field(line, 0), line[8..24].trim().parse::<f64>().unwrap());
+        } else if section.starts_with("*ELEMENT") {
+            let thickness = lines.next().unwrap();
+            if is_kept(x_of[&field(line, 2)]) {
+                kept += &format!("{line}\n{thickness}\n");
+            }
+            continue;
+        }
+        kept += &format!("{line}\n");
+    }
+    kept
+}
+
+/// Two halves of a sheet that overlap a little are both mapped, whatever their verdicts.
+#[test]
+fn halves_that_overlap_do_not_give_way_to_each_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = [240.0, 140.0];
+    let crash = bumped(own, [30, 20], 10.0, 1, None);
+    let whole = bumped(own, [43, 29], 7.0, 1, Some(0.9));
+    for (name, deck) in [
+        ("car.k", format!("*KEYWORD\n{crash}*END\n")),
+        ("left.dynain", cut(&whole, |x| x <= 190.0)),
+        ("right.dynain", cut(&whole, |x| x >= 160.0)),
+    ] {
+        std::fs::write(folder.path().join(name), deck).unwrap();
+    }
+    let mut command = Command::new(env!("CARGO_BIN_EXE_shapematch"));
+    let files = ["map-car", "car.k", "left.dynain", "right.dynain"];
+    let done = (command.current_dir(folder.path()).args(files))
+        .args(["--out", "mapped", "--json", "-"])
+        .output()
+        .unwrap();
+    let record: Value = serde_json::from_slice(&done.stdout).unwrap();
+    for row in record["rows"].as_array().unwrap() {
+        assert_ne!(row["state"], "none", "{row}");
+        assert!(row["mapped_area"].as_f64().unwrap() > 0.4, "{row}");
+    }
+}
+
+/// The crash model among the stamped files, as where all decks of a folder are given.
+#[test]
+fn the_crash_model_is_no_stamped_part_of_itself() {
+    let car = Car::new();
+    let options = ["--out", "mapped", "--json", "-"];
+    let files = ["map-car", CRASH, CRASH, STAMPED[1]];
+    let done = car.run(&[&files, &options[..]].concat());
+    let record: Value = serde_json::from_slice(&done.stdout).unwrap();
+    let [itself, own] = [0, 1].map(|row| &record["rows"][row]);
+    assert_eq!(itself["state"], "none");
+    assert_eq!(itself["reasons"][0], "same-file", "{itself}");
+    assert_eq!(own["state"], "sure", "{own}");
 }
 
 #[test]

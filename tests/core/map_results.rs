@@ -338,8 +338,7 @@ fn an_element_that_is_listed_again_with_its_thickness_is_one() {
     let output = Pair::new(&twice, &sheet).map(&["--out", "out.k"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(
-        errors(&output)
-            .contains("1 of the elements that are mapped onto are defined more than once"),
+        errors(&output).contains("more than once (1 card too many)"),
         "{}",
         errors(&output)
     );

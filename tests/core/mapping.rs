@@ -751,6 +751,51 @@ fn a_blank_of_two_gauges_has_no_gauge_between() {
     }
 }
 
+/// Finer elements take what the thickness at the corners of a coarse one says there, not its mean.
+#[test]
+fn thickness_varies_within_a_stamped_element() {
+    let blank = |size| Blank {
+        jitter: 0.0,
+        length: 60.0,
+        ..Blank::new(size)
+    };
+    let mut part = source(blank(60.0).mesh(flat), 2, uniform);
+    assert_eq!(part.thickness.len(), 1);
+    let corners = part.mesh.corner_points(0);
+    part.thickness[0] = std::array::from_fn(|at| 1.0 + corners[at].x / 60.0);
+    let onto = target(blank(10.0).mesh(flat), 2);
+    let mapped = map_one(&part, Similarity::identity(), &onto, &full());
+    for (thickness, centre) in mapped.thickness.iter().zip(onto.mesh.centroids()) {
+        let expected = 1.0 + centre.x / 60.0;
+        assert!(
+            (thickness - expected).abs() < 1e-9,
+            "{thickness} at {centre}"
+        );
+    }
+}
+
+/// A file without results beside one of the same sheet with them, as a mesh beside its dynain, takes no element.
+#[test]
+fn a_sheet_without_results_takes_nothing_from_one_with_them() {
+    let mesh = Blank::new(2.5).mesh(flat);
+    let full_part = source(mesh.clone(), 2, uniform);
+    let mut bare = full_part.clone();
+    bare.thickness = vec![[f64::NAN; 4]; mesh.len()];
+    (bare.states, bare.strains) = (Layered::new(mesh.len()), Layered::new(mesh.len()));
+    let onto = target(Blank::new(5.0).mesh(flat), 2);
+    let alone = map_one(&full_part, Similarity::identity(), &onto, &full());
+    for order in [[&bare, &full_part], [&full_part, &bare]] {
+        let placed = order.map(|part| PlacedSource {
+            part,
+            target_from_source: Similarity::identity(),
+        });
+        let mapped = map(&placed, &onto, &full(), &Monitor::silent()).unwrap();
+        assert_eq!(mapped.thickness, alone.thickness);
+        let statuses = mapped.elements.iter().map(|element| element.status);
+        assert!(statuses.eq(alone.elements.iter().map(|element| element.status)));
+    }
+}
+
 /// A skin at z = 0 that faces up, with plastic strain 0.1, and a folded flange of a length 1.5 above it that faces
 /// down, with 0.9.
 fn hemmed(length: f64) -> SourcePart {

@@ -175,6 +175,18 @@ fn oddities_are_named_with_their_place() {
         .map(|d| d.position.as_ref().unwrap().line)
         .collect();
     assert_eq!(lines, [4, 6, 12]);
+    // A facet that does not end takes nothing into the next one.
+    let open = text
+        .replacen("endfacet\n", "", 1)
+        .replacen("vertex 1 0\n", "vertex 1 0 0\n", 1);
+    let model = read("a.stl", open).unwrap();
+    assert_eq!(model.shells.len(), 1);
+    let first = model.diagnostics.iter().next().unwrap();
+    assert!(
+        first.message.contains("without endfacet"),
+        "{}",
+        first.message
+    );
     let mut short = stl::write_binary(&strip());
     short.truncate(84 + 50 * 3 + 20);
     let model = read("a.stl", short).unwrap();

@@ -1,17 +1,21 @@
 //! Projects: saved and opened, moved, changed on disk, from later programs, and kept in case of a crash.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use proptest::prelude::*;
 use shapematch::app::*;
 use shapematch::geometry::Similarity;
-use shapematch::jobs::{JobKey, Located, PipelineRunner, ProjectFile, ProjectRequest, Runner as _};
+use shapematch::jobs::{
+    JobKey, JobOutput, JobStage, Located, PartSource, PipelineRunner, ProjectFile, ProjectRequest,
+    Runner as _,
+};
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::map::{ChangedParts, PoseOrigin};
 use shapematch::pipeline::match_parts::MatchRecipe;
 use shapematch::pipeline::project::{PartEntry, Project};
 use shapematch::registration::{
-    DataSide, Floor, Hand, MatchSettings, Method, Metric, Motion, PairWith, Search, Selection,
+    DataSide, Floor, Hand, MatchSettings, Method, Metric, Motion, PairSelection, PairWith, Search,
     StartMethod, StartSettings,
 };
 use shapematch::role::{PerRole, Role};
@@ -86,12 +90,12 @@ fn save(window: &mut Window, path: &Path) {
         if let Effect::WriteProject {
             path,
             project,
-            document,
+            kept,
             ..
         } = effect
         {
             project.write(&path).unwrap();
-            window.apply(ProjectCommand::Written(path, project.saved_at, document));
+            window.apply(ProjectCommand::Written(path, project.saved_at, kept));
             n_written += 1;
         }
     }
@@ -184,6 +188,34 @@ fn assert_same_work(a: &Window, b: &Window) {
     assert_eq!(a.state.view.cameras, b.state.view.cameras);
     assert_eq!(a.state.view.display, b.state.view.display);
     assert_eq!(a.state.view.is_moved_over, b.state.view.is_moved_over);
+}
+
+#[test]
+fn an_example_pair_is_one_step() {
+    let mut window = Window::real();
+    window.apply(FileCommand::OpenExample);
+    let example = window.part(Role::Crash).bounds();
+    window.apply(FileCommand::OpenRealisticExample);
+    assert_ne!(window.part(Role::Crash).bounds(), example);
+    window.act(Action::Undo);
+    assert_eq!(window.part(Role::Crash).bounds(), example);
+    assert_eq!(window.part(Role::Stamped).source, PartSource::Example);
+}
+
+#[test]
+fn a_sweep_after_saving_is_to_be_saved() {
+    let (folder, [crash, stamped, path]) = folder();
+    let mut window = worked(&crash, &stamped);
+    save(&mut window, &path);
+    window.holds = true;
+    window.apply(MatchCommand::Sweep(Box::default()));
+    let (id, kind, stamp) = window.held.remove(0);
+    let done = JobOutput::Swept(Arc::default());
+    window.tell(id, kind.key(), stamp, JobStage::Finished(done));
+    assert!(window.state.is_unsaved());
+    save(&mut window, &path);
+    assert!(!window.state.is_unsaved());
+    drop(folder);
 }
 
 #[test]
@@ -532,6 +564,10 @@ fn later_programs_are_named_and_their_additions_kept() {
         "{error}"
     );
 
+    let odd = text.replace("shapematch.project/1", "shapematch.project/2.1");
+    let error = Project::parse(&odd, &path).unwrap_err().to_string();
+    assert!(error.contains("version 2.1"), "{error}");
+
     let more = text
         .replacen("{", "{\n  \"spring_back\": {\"of\": [1.5, 2]},", 1)
         .replacen("\"allowance\"", "\"mood\": \"good\", \"allowance\"", 1);
@@ -600,10 +636,10 @@ fn any_recipe() -> impl Strategy<Value = MatchRecipe> {
         |(x, n, (method, select, floor, metric, hand, start), is)| {
             let floor = [Floor::Auto, Floor::None, Floor::Length(x[0])][floor];
             let selection = [
-                Selection::All,
-                Selection::TrimmedSearch,
-                Selection::Trimmed { overlap: x[1] },
-                Selection::Fractional {
+                PairSelection::All,
+                PairSelection::TrimmedSearch,
+                PairSelection::Trimmed { overlap: x[1] },
+                PairSelection::Fractional {
                     lambda: x[1],
                     floor,
                 },

@@ -171,8 +171,8 @@ fn every_selection_metric_and_motion_finds_the_pose() {
     for situation in situations() {
         let source = situation.source.transformed(&nudge.inverse());
         let edge = situation.target.mean_edge_length();
-        for &(mut selection) in Selection::ALL {
-            if let Selection::Trimmed { overlap } = &mut selection {
+        for &(mut selection) in PairSelection::ALL {
+            if let PairSelection::Trimmed { overlap } = &mut selection {
                 *overlap = 0.95 * situation.overlap;
             }
             for &metric in Metric::ALL {
@@ -193,7 +193,7 @@ fn every_selection_metric_and_motion_finds_the_pose() {
                     // All pairs, point to point, scale free: what overhangs shrinks the part, and
                     // no setting of these three helps. It must be told.
                     let misled = situation.overlap < 1.0
-                        && selection == Selection::All
+                        && selection == PairSelection::All
                         && metric == Metric::PointToPoint
                         && motion == Motion::Similarity;
                     if misled {
@@ -568,7 +568,7 @@ fn bad_input_is_named() {
         Err(RegistrationError::AngleSegment { degrees: 75.0 })
     );
     let settings = MatchSettings {
-        selection: Selection::Trimmed { overlap: 1.5 },
+        selection: PairSelection::Trimmed { overlap: 1.5 },
         ..MatchSettings::default()
     };
     assert!(matches!(

@@ -107,6 +107,20 @@ fn every_file_says_what_it_is_for() {
     assert!(silent.is_empty(), "no `//!` head:\n{}", silent.join("\n"));
 }
 
+/// Code is broken by the formatter, which leaves comments as they are.
+#[test]
+fn comments_are_at_most_120_columns_wide() {
+    let wide_lines = |(name, text): (String, String)| {
+        let lines = text.lines().enumerate();
+        let comments = lines.filter(|(_, line)| line.trim_start().starts_with("//"));
+        let wide = comments.filter(|(_, line)| line.chars().count() > 120);
+        wide.map(|(at, _)| format!("{name}:{}", at + 1))
+            .collect::<Vec<_>>()
+    };
+    let wide: Vec<String> = sources().into_iter().flat_map(wide_lines).collect();
+    assert!(wide.is_empty(), "too wide:\n{}", wide.join("\n"));
+}
+
 /// 0 for the standard library, 1 for crates, 2 for modules of ours.
 fn import_group(line: &str, modules: &[&str]) -> u8 {
     let path = line.trim_start_matches("use ").trim_start_matches("::");
@@ -258,7 +272,8 @@ fn counts_agree_with_their_nouns() {
     );
 }
 
-/// True for `{n_parts} parts` and `{n} parts`, in which one would be a plural. A share, as in "2 of {n} parts", has one.
+/// True for `{n_parts} parts` and `{n} parts`, in which one would be a plural. A share, as in "2 of {n} parts", has
+/// one.
 fn has_fixed_plural(line: &str) -> bool {
     line.match_indices("{n").any(|(at, _)| {
         let is_share = line[..at].ends_with(" of ");

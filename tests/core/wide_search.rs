@@ -126,8 +126,8 @@ fn holes_say_where_a_piece_of_a_strip_lies_along_it() {
     }
 }
 
-/// A panel with beads and holes on a lattice of 100 mm, in cells of 4 mm, over a range of x and y of the same length; one
-/// more hole, smaller than the others, tells the places of the lattice apart.
+/// A panel with beads and holes on a lattice of 100 mm, in cells of 4 mm, over a range of x and y of the same length;
+/// one more hole, smaller than the others, tells the places of the lattice apart.
 fn lattice([x0, y0]: [f64; 2], length: f64) -> TriMesh {
     const PITCH: f64 = 4.0;
     let wave = |t: f64| (std::f64::consts::TAU * t / 100.0).sin();

@@ -106,7 +106,13 @@ fn a_distance_from_a_hole_begins_at_its_centre() {
     window.run_steps(30);
     let state = window.state().state();
     let part = state.document.part(Role::Crash).expect("loaded");
-    let hole = part.facts.landmarks.holes[0];
+    let hole = part
+        .facts
+        .landmarks
+        .values()
+        .next()
+        .expect("one part")
+        .holes[0];
     let canvas = window.get_by(|node| {
         let label = node.label();
         node.role() == egui::accesskit::Role::Canvas
@@ -177,8 +183,9 @@ fn is_on_stamped(window: &Harness<'static, Shell>) -> bool {
         return false;
     };
     let part = state.document.part(Role::Stamped).expect("it was clicked");
-    let holes = &part.facts.landmarks.holes;
-    if holes.iter().any(|hole| (hole.center - point).norm() < 1e-6) {
+    let landmarks = part.facts.landmarks.values();
+    let mut holes = landmarks.flat_map(|of_part| &of_part.holes);
+    if holes.any(|hole| (hole.center - point).norm() < 1e-6) {
         return false;
     }
     let tree = part.loaded.surface.bvh();

@@ -93,15 +93,7 @@ fn the_limits_of_the_colours_are_dragged_and_stay_symmetric() {
     let grip = harness
         .get_by_label("Upper limit of the colours (stamped)")
         .rect();
-    let before = harness.state().state.comparison().map(|c| {
-        harness
-            .state()
-            .state
-            .view
-            .display
-            .coloring
-            .deviation_scale(c)
-    });
+    let before = harness.state().state.deviation_scale();
     let before = before.unwrap();
     let from = grip.center();
     drag(
@@ -157,9 +149,7 @@ fn hides(harness: &Harness<'_, Desk>, by: ColorBy) -> bool {
     let state = &harness.state().state;
     let display = &state.view.display;
     let scale = match by {
-        ColorBy::Deviation => display
-            .coloring
-            .deviation_scale(state.comparison().unwrap()),
+        ColorBy::Deviation => state.deviation_scale().unwrap(),
         _ => display.limited(by, ColorScale::new(ColorMap::Viridis, 0.0, 1.0)),
     };
     scale.hides_beyond

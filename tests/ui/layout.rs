@@ -486,8 +486,8 @@ fn the_verdict_is_in_sight_once_the_sections_above_have_folded() {
     }
 }
 
-/// Every digit of the pose is seen whole, in the usual column and in the narrowest one, which a window of the usual size
-/// has with texts of twice the size.
+/// Every digit of the pose is seen whole, in the usual column and in the narrowest one, which a window of the usual
+/// size has with texts of twice the size.
 #[test]
 fn the_matrix_shows_every_digit_without_scrolling() {
     let mut window = matched();

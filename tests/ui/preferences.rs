@@ -138,8 +138,7 @@ fn colours_of_the_preferences_hold_at_once_and_for_the_next_start() {
     finish(&mut window);
     let map = |window: &Window| {
         let state = window.state().state();
-        let comparison = state.comparison().expect("measured");
-        state.view.display.coloring.deviation_scale(comparison).map
+        state.deviation_scale().expect("measured").map
     };
     assert_eq!(map(&window), ColorMap::CoolWarm);
     choose_map(&mut window, "Deviation colours", "Grey, for printing");

@@ -4,7 +4,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use shapematch::app::{Command, MatchCommand, Settings, ViewCommand};
 use shapematch::mapping::MapOptions;
-use shapematch::registration::{Floor, MatchSettings, Method, Selection};
+use shapematch::registration::{Floor, MatchSettings, Method, PairSelection};
 use shapematch::role::Role;
 use shapematch::settings::{Domain, MAP_SETTINGS, MatchRecipe, SETTINGS, Setting, Unit};
 use shapematch::ui::Shell;
@@ -101,11 +101,11 @@ fn every_number_of_the_settings_says_at_its_field_why_a_text_is_refused() {
     click(&mut window, "Match settings");
     let mut seen = Vec::new();
     for selection in [
-        Selection::Fractional {
+        PairSelection::Fractional {
             lambda: 3.0,
             floor: Floor::Length(0.1),
         },
-        Selection::Trimmed { overlap: 0.9 },
+        PairSelection::Trimmed { overlap: 0.9 },
     ] {
         let recipe = MatchRecipe {
             settings: MatchSettings {

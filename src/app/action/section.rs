@@ -14,7 +14,7 @@ pub(super) const ROWS: &[ActionRow] = &[
         tooltip: "Cut both parts with a plane and show their outlines",
         keys: Keys::press(&[key('S')]),
         enabled: |state| state.document.has_any_part(),
-        command: |state| some(InspectCommand::SetSection(toggled(state))),
+        command: |state| some(InspectCommand::SetSection(state.toggled_section())),
     },
     ActionRow {
         action: Action::ToggleSectionClip,
@@ -93,11 +93,6 @@ fn section_normal(state: &AppState) -> Vector3 {
     plane
         .unwrap_or_else(|| state.default_section_plane())
         .normal
-}
-
-fn toggled(state: &AppState) -> SectionView {
-    let section = state.inspect.section;
-    section.toggled(|| state.default_section_plane())
 }
 
 fn across(state: &AppState, normal: &Vector3) -> SectionView {

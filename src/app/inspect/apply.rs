@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::coloring::own_limit;
 use super::{InspectCommand, InspectState, Label, LookedAt};
 use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
@@ -26,6 +27,7 @@ impl InspectState {
         shown: &Similarity,
     ) -> Vec<Effect> {
         match command {
+            InspectCommand::FitRange => self.limit = None,
             InspectCommand::Update => {
                 self.gave_up_comparing = None;
                 return compare(work, shown);
@@ -106,6 +108,13 @@ impl InspectState {
         document: &Document,
         comparison: Arc<Comparison>,
     ) {
+        let is_moved = document.result.is_some() && document.current_result().is_none();
+        let held = self
+            .limit
+            .take()
+            .filter(|limit| is_moved && limit.current(document).is_some());
+        let limit = held.unwrap_or_else(|| OfParts::new(document, own_limit(&comparison)));
+        self.limit = Some(limit);
         self.compared = Some(OfParts::new(document, comparison.into()));
     }
 }

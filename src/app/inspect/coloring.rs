@@ -82,13 +82,8 @@ impl Coloring {
         }
     }
 
-    /// The colours of a deviation.
-    pub fn deviation_scale(&self, comparison: &Comparison) -> ColorScale {
-        let deviation = &comparison.deviation;
-        let ways = [&deviation.source_on_target, &deviation.target_on_source];
-        let limit = ways.map(|way| way.stats.round_limit());
-        let limit = limit[0].max(limit[1]);
-        let is_signed = deviation.is_signed;
+    /// The colours of a deviation; `limit` is the end of the automatic range.
+    pub(super) fn deviation_scale(&self, is_signed: bool, limit: f64) -> ColorScale {
         let [min, max] = match self.limits {
             Some(limits) => limits,
             None if is_signed => [-limit, limit],
@@ -97,6 +92,7 @@ impl Coloring {
         ColorScale {
             // Of the values, not of limits that were set by hand: a choice of colours changes no share.
             tolerance: self.tolerance.unwrap_or_else(|| round_quarter(limit)),
+            is_signed,
             n_bands: self.n_bands,
             reversed: self.is_reversed,
             has_pattern: self.has_pattern,
@@ -104,6 +100,14 @@ impl Coloring {
             ..ColorScale::new(if is_signed { self.signed_map } else { self.map }, min, max)
         }
     }
+}
+
+/// The round end of the range that the values of a comparison ask for.
+pub(super) fn own_limit(comparison: &Comparison) -> f64 {
+    let deviation = &comparison.deviation;
+    let ways = [&deviation.source_on_target, &deviation.target_on_source];
+    let limits = ways.map(|way| way.stats.round_limit());
+    limits[0].max(limits[1])
 }
 
 /// A quarter of a length, rounded down to 1, 2 or 5 times a power of ten.

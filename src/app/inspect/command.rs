@@ -10,6 +10,8 @@ use crate::role::Role;
 pub enum InspectCommand {
     /// Measure the deviation at the shown pose.
     Update,
+    /// Let the range of the map be that of its values.
+    FitRange,
     /// Pin a label to the node next to a point of the part's own frame.
     Pin(Role, Point3),
     /// Call a label so.

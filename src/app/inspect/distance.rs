@@ -111,7 +111,8 @@ impl AppState {
         let part = self.document.part(role);
         let holes = part
             .into_iter()
-            .flat_map(|part| &part.facts.landmarks.holes);
+            .flat_map(|part| part.facts.landmarks.values())
+            .flat_map(|landmarks| &landmarks.holes);
         let mut holes = holes.map(|hole| (hole.center - point).norm() <= AT_CENTER * hole.radius);
         holes.any(|is_there| is_there)
     }

@@ -12,8 +12,10 @@ pub use command::InspectCommand;
 pub use distance::DistanceTool;
 pub use section::SectionView;
 
+use self::coloring::own_limit;
 use super::{AppState, BottomTab, ColorBy, Document, OfParts, Shared};
 use crate::assess::deviation::{DeviationStats, OneWay, OverlapClass};
+use crate::colormap::ColorScale;
 use crate::geometry::{Point3, Similarity};
 use crate::jobs::{JobKey, Stamp};
 use crate::pipeline::inspect::Comparison;
@@ -69,6 +71,9 @@ pub struct InspectState {
     pub distance: Option<DistanceTool>,
     /// The last comparison of both parts, up to date or not.
     pub compared: Option<OfParts<Shared<Comparison>>>,
+    /// The end of the automatic range of the map. It stays while the stamped part is moved by hand from where it was
+    /// matched, so that colours and shares can be compared with those before.
+    limit: Option<OfParts<f64>>,
     /// The place that was looked at last; marked until something else is.
     place: Option<LookedAt>,
     /// The state at which a comparison failed or was cancelled.
@@ -126,6 +131,24 @@ impl AppState {
     /// The last comparison of the parts that are loaded, up to date or not.
     pub fn comparison(&self) -> Option<&Comparison> {
         self.inspect.comparison(&self.document)
+    }
+
+    /// The colours of the deviation, if it was measured.
+    pub fn deviation_scale(&self) -> Option<ColorScale> {
+        let comparison = self.comparison()?;
+        let held = self.inspect.limit.as_ref();
+        let held = held.and_then(|limit| limit.current(&self.document).copied());
+        let limit = held.unwrap_or_else(|| own_limit(comparison));
+        let coloring = &self.view.display.coloring;
+        Some(coloring.deviation_scale(comparison.deviation.is_signed, limit))
+    }
+
+    /// True if the automatic range of the map is that of the pose before the stamped part was moved.
+    pub fn is_range_held(&self) -> bool {
+        let held = self.inspect.limit.as_ref();
+        let held = held.and_then(|limit| limit.current(&self.document).copied());
+        let own = self.comparison().map(own_limit);
+        held.is_some() && held != own
     }
 
     /// One direction of the comparison: from the nodes of `role` to the other part.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::app::{AppState, Document};
-use crate::geometry::{Plane, Point3, Vector3};
+use crate::geometry::{Aabb, Plane, Point3, Similarity, Vector3};
 use crate::role::Role;
 
 /// The section plane and what becomes of the parts in front of it.
@@ -57,17 +57,38 @@ impl SectionView {
 }
 
 impl AppState {
-    /// A plane through the middle of the parts, across their longest side.
-    pub fn default_section_plane(&self) -> Plane {
-        let bounds = self.visible_bounds(Role::Crash);
-        let bounds = if bounds.is_empty() {
-            self.visible_bounds(Role::Stamped)
-        } else {
-            bounds
+    /// The section on or off. A plane of other parts, or from before they were moved, that meets neither is put anew.
+    pub(in crate::app) fn toggled_section(&self) -> SectionView {
+        let section = self.inspect.section;
+        let meets = |plane: &Plane| {
+            let boxes = Role::ALL.map(|role| self.bounds_of(role));
+            boxes
+                .iter()
+                .any(|bounds| !bounds.is_empty() && plane.meets(bounds))
         };
-        if bounds.is_empty() {
-            return Plane::new(Point3::origin(), &Vector3::x());
+        SectionView {
+            plane: section.plane.filter(|plane| section.is_on || meets(plane)),
+            ..section
         }
+        .toggled(|| self.default_section_plane())
+    }
+
+    /// A plane through the middle of what both parts have in common, or of the crash part, or of the only one; across
+    /// its longest side.
+    pub fn default_section_plane(&self) -> Plane {
+        let [crash, stamped] = Role::ALL.map(|role| self.bounds_of(role));
+        // As loaded they lie anywhere.
+        let is_placed = self.view.is_moved_over
+            || self.document.crash_from_stamped() != &Similarity::identity();
+        let common = if is_placed {
+            crash.intersection(&stamped)
+        } else {
+            Aabb::empty()
+        };
+        let mut of_interest = [common, crash, stamped].into_iter();
+        let Some(bounds) = of_interest.find(|bounds| !bounds.is_empty()) else {
+            return Plane::new(Point3::origin(), &Vector3::x());
+        };
         let size = bounds.max - bounds.min;
         let longest = size.imax();
         let mut normal = Vector3::zeros();

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::Action;
+use crate::app::{Action, LogStep};
 use crate::jobs::JobKey;
 use crate::text::capital;
 
@@ -89,6 +89,7 @@ pub struct Notice {
     pub offers: Vec<Action>,
     /// The job that failed, if it reports one.
     of_job: Option<JobKey>,
+    about: Option<LogStep>,
     is_toast: bool,
 }
 
@@ -115,6 +116,8 @@ pub struct Showing {
     pub now: Duration,
     /// True if it goes into the bell's list only.
     pub is_muted: bool,
+    /// What it is about, if it is a step of the work.
+    pub about: Option<LogStep>,
 }
 
 /// The toasts and the bell's list.
@@ -154,6 +157,7 @@ impl Notices {
             is_unread: true,
             offers: offers.to_vec(),
             of_job: None,
+            about: showing.about,
             is_toast: !showing.is_muted,
         });
         if self.items.len() > MAX_KEPT {
@@ -191,6 +195,19 @@ impl Notices {
     /// What was done then was taken back: what was said of it no longer holds. Errors stay until they are closed.
     pub fn withdraw_from(&mut self, at: Duration) {
         let is_meant = |n: &&mut Notice| n.at == at && n.level != NoticeLevel::Error;
+        for notice in self.items.iter_mut().filter(is_meant) {
+            notice.is_toast = false;
+            notice.is_unread = false;
+        }
+    }
+
+    /// What was said before about these steps is about other parts or another pose. Errors stay until they are closed.
+    pub(in crate::app) fn withdraw_about(&mut self, steps: &[LogStep], now: Duration) {
+        let is_meant = |n: &&mut Notice| {
+            n.about.is_some_and(|about| steps.contains(&about))
+                && n.at < now
+                && n.level != NoticeLevel::Error
+        };
         for notice in self.items.iter_mut().filter(is_meant) {
             notice.is_toast = false;
             notice.is_unread = false;

@@ -36,7 +36,7 @@ impl AppState {
         let (mut work, topics) = self.split();
         let effects = take(&mut work, topics.mapping);
         if is_saved {
-            self.project.keep_as_saved(&self.document);
+            self.keep_as_saved();
         }
         effects
     }

@@ -53,8 +53,8 @@ impl AppState {
         found.into_iter().flatten().take(MOST).collect()
     }
 
-    /// The cause beside which nothing else that was found means anything: sizes and overlap of several parts say nothing
-    /// about the one that is stamped, and parts in different units lie nowhere on each other.
+    /// The cause beside which nothing else that was found means anything: sizes and overlap of several parts say
+    /// nothing about the one that is stamped, and parts in different units lie nowhere on each other.
     fn only_cause(&self, assessment: &Assessment) -> Option<Cause> {
         let of_parts = self.parts_cause(assessment);
         of_parts.or_else(|| self.units_cause(assessment))

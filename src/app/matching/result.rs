@@ -99,8 +99,11 @@ fn take_pose_as_result(
     let revision = work.history.next_revision();
     work.previews.drop_all();
     work.commit(name, |document| {
-        document.pose.crash_from_stamped = crash_from_stamped;
-        document.pose.revision = revision;
+        // What was made at the very same pose, such as a mapping, still holds.
+        if document.pose.crash_from_stamped != crash_from_stamped {
+            document.pose.crash_from_stamped = crash_from_stamped;
+            document.pose.revision = revision;
+        }
         document.result = Some(result(document.stamp()));
     });
 }

@@ -15,6 +15,7 @@ pub use motion::{
 };
 pub use overlap::PoseOverlap;
 
+use super::follow_up::FollowUp;
 use super::work::Work;
 use super::{AppState, GestureId, NoticeLevel, Reason, StampedPose};
 use crate::app::LogStep;
@@ -92,7 +93,16 @@ impl MovingState {
             // The part is let go, and stays where the job that holds it has it.
             MoveCommand::AbandonDrag(_) if work.can_move().is_err() => self.end_drag(work),
             _ if work.can_move().is_err() => {}
-            _ => self.move_part(work, command, frame),
+            MoveCommand::Begin { .. } | MoveCommand::Input(_) => {
+                self.move_part(work, command, frame);
+            }
+            _ => {
+                // Another move ends the one by keys as it is, so that Escape does not take back both.
+                if self.tool.take().is_some() {
+                    self.end_drag(work);
+                }
+                self.move_part(work, command, frame);
+            }
         }
     }
 
@@ -233,6 +243,7 @@ fn set_pose(work: &mut Work<'_>, name: String, crash_from_stamped: Similarity) {
 }
 
 fn log_move(work: &mut Work<'_>, name: String) {
+    work.follow(FollowUp::MovedByHand);
     work.log_step(LogStep::Move, Some(Role::Stamped), name, None);
 }
 

@@ -145,10 +145,10 @@ impl PartsState {
 
     fn open_example(&mut self, work: &mut Work<'_>, source: &PartSource) -> Vec<Effect> {
         self.guess = Guess::default();
-        Role::ALL
-            .into_iter()
-            .flat_map(|role| self.load(work, role, source.clone(), LoadSettings::default()))
-            .collect()
+        let load = |role| self.load(work, role, source.clone(), LoadSettings::default());
+        let effects = Role::ALL.into_iter().flat_map(load).collect();
+        self.together_gesture = Some(work.history.next_gesture());
+        effects
     }
 
     /// A newer load of a part ends the older one.
@@ -159,7 +159,7 @@ impl PartsState {
         source: PartSource,
         settings: LoadSettings,
     ) -> Vec<Effect> {
-        self.again_gesture = None;
+        self.together_gesture = None;
         let mut effects = Vec::new();
         for key in [JobKey::Load(role), JobKey::Reselect(role)] {
             if work.jobs.is_active(key) {
@@ -190,7 +190,7 @@ impl PartsState {
     fn reload_together(&mut self, work: &mut Work<'_>, roles: &[Role]) -> Vec<Effect> {
         let roles = roles.iter();
         let effects = roles.flat_map(|&role| self.reload(work, role)).collect();
-        self.again_gesture = Some(work.history.next_gesture());
+        self.together_gesture = Some(work.history.next_gesture());
         effects
     }
 
@@ -215,6 +215,7 @@ impl PartsState {
         });
         self.forget_missing(work.document);
         further_dropped(work, n_dropped);
+        work.follow(FollowUp::PartClosed);
         let of_part = [
             JobKey::Load(role),
             JobKey::Reselect(role),
@@ -429,11 +430,11 @@ impl PartsState {
             // Another deck may have a part of the same number.
             self.selected.retain(|part| part.role != role);
         }
-        let gesture = self.again_gesture.filter(|_| is_again);
-        let name = if gesture.is_some_and(|gesture| work.history.is_open(gesture)) {
-            "Load both files again".to_owned()
-        } else {
-            format!("Load {file}")
+        let gesture = self.together_gesture;
+        let name = match gesture.filter(|gesture| work.history.is_open(*gesture)) {
+            Some(_) if is_again => "Load both files again".to_owned(),
+            Some(_) => "Load both files".to_owned(),
+            None => format!("Load {file}"),
         };
         work.commit_in(name, gesture, |document| {
             let old = document.parts.get_mut(role);

@@ -52,8 +52,8 @@ impl AppState {
     }
 }
 
-/// The part of the crash model that is more like the stamped part than all that are matched together, or several that are
-/// about equally alike. Parts that share nodes count as one, too.
+/// The part of the crash model that is more like the stamped part than all that are matched together, or several that
+/// are about equally alike. Parts that share nodes count as one, too.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MoreAlike {
     /// The ids of each.
@@ -157,7 +157,7 @@ impl Document {
     fn more_alike(&self) -> Option<MoreAlike> {
         let both = self.both()?;
         let n_used = both.crash.facts.used.len();
-        if n_used < 2 || both.stamped.facts.used.len() != 1 {
+        if n_used < 2 {
             return None;
         }
         let stamped = self.signature(LikeWhat::Used(Role::Stamped))?;
@@ -171,7 +171,21 @@ impl Document {
         let of_joined = joined
             .into_iter()
             .map(|(ids, own)| (ids, stamped.likeness(&own)));
-        let choices = more_alike(of_used.chain(of_joined), stamped.likeness(&together));
+        // Solids beside shells, such as adhesive, are no part of the sheet.
+        let with_shells = both.crash.facts.used.iter().copied();
+        let with_shells: Vec<u64> = with_shells
+            .filter(|id| facts.moments.contains_key(id))
+            .collect();
+        let of_all = stamped.likeness(&together);
+        let (sheets, least) = if with_shells.len() < n_used {
+            (Some((with_shells, of_all)), 0.0)
+        } else {
+            (None, of_all)
+        };
+        let all = of_used
+            .chain(of_joined)
+            .chain(sheets.filter(|(ids, _)| ids.len() > 1));
+        let choices = more_alike(all, least);
         (!choices.is_empty()).then_some(MoreAlike { choices, n_used })
     }
 

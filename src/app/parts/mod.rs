@@ -57,8 +57,8 @@ pub struct PartsState {
     unit_hint_dismissed_for: Option<PerRole<u64>>,
     /// The undo step of a change of units that a new factor belongs to.
     unit_gesture: Option<GestureId>,
-    /// The undo step of files that are read again together.
-    again_gesture: Option<GestureId>,
+    /// The undo step of files that are read together.
+    together_gesture: Option<GestureId>,
     /// Files whose content on disk is another than the one that was read.
     changed_on_disk: BTreeSet<PathBuf>,
 }

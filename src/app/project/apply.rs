@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{ProjectCommand, ProjectState};
+use super::{Kept, ProjectCommand, ProjectState};
 use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
 use crate::app::{Action, Dialog, Document, Effect, LogStep, NoticeLevel};
@@ -40,8 +40,8 @@ impl ProjectState {
             ProjectCommand::SaveAs => self.ask_save(work.document),
             // The dialog has asked about the file that is there.
             ProjectCommand::Write(path) => write(work, path, None),
-            ProjectCommand::Written(path, saved_at, document) => {
-                self.written(work, (path, saved_at), *document)
+            ProjectCommand::Written(path, saved_at, kept) => {
+                self.written(work, (path, saved_at), *kept)
             }
             ProjectCommand::NotWritten => {
                 self.quits_when_saved = false;
@@ -100,13 +100,13 @@ impl ProjectState {
         &mut self,
         work: &mut Work<'_>,
         (path, saved_at): (PathBuf, u64),
-        document: Document,
+        kept: Kept,
     ) -> Vec<Effect> {
         let text = format!("project saved: {}", path.display());
         work.log_at(NoticeLevel::Success, LogStep::Project, None, text, None);
         work.log.notices.withdraw(Action::SaveProjectAs);
-        let project = document.project;
-        self.saved = Some(document);
+        let project = kept.document.project;
+        self.saved = Some(kept);
         let now = work.unix_now();
         work.settings.remember_path(&path, now);
         self.file = Some((path, project));

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::app::Document;
+use crate::app::Kept;
 use crate::jobs::{Located, ProjectFile, ProjectRequest};
 use crate::pipeline::autosave::RecoveredSession;
 
@@ -27,8 +27,8 @@ pub enum ProjectCommand {
     SaveAs,
     /// Write the project there.
     Write(PathBuf),
-    /// The shell wrote this state of the work, at a time in seconds since 1970.
-    Written(PathBuf, u64, Box<Document>),
+    /// The shell wrote this work, at a time in seconds since 1970.
+    Written(PathBuf, u64, Box<Kept>),
     /// The user closed the dialog.
     NotWritten,
     /// The shell could not write.

@@ -12,13 +12,14 @@ use serde_json::{Map, Value};
 
 use self::window::WindowEntry;
 use super::{
-    AppState, Document, Effect, Further, Mapping, MatchResult, Part, age_text, clock_text,
+    AppState, Document, Effect, Further, Mapping, MatchResult, Part, Shared, age_text, clock_text,
 };
 use crate::formats::Selection;
 use crate::jobs::{JobKey, PartSource, ProjectFile, ProjectRequest};
 use crate::pipeline::autosave::RecoveredSession;
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::pipeline::project::{FurtherEntry, PartEntry, PlacingEntry, Project, ResultEntry};
+use crate::pipeline::sweep::Sweep;
 use crate::role::{PerRole, Role};
 
 /// The project that is worked on.
@@ -35,14 +36,22 @@ pub struct ProjectState {
     pub missing: Option<(ProjectRequest, Vec<(ProjectFile, PathBuf)>)>,
     /// Why the file that was pointed at last is not taken, a sentence.
     pub refused: Option<String>,
-    /// The document as it was saved or opened.
-    saved: Option<Document>,
-    /// The document and whether there was a sweep when the session was autosaved last.
-    autosaved: Option<(Document, bool)>,
+    /// The work as it was saved or opened.
+    saved: Option<Kept>,
+    /// The work as it was autosaved last.
+    autosaved: Option<Kept>,
     /// Fields of a later program.
     others: Map<String, Value>,
     /// The window closes as soon as the project is written.
     quits_when_saved: bool,
+}
+
+/// The work that a project keeps, to tell whether something was done since.
+#[derive(Debug, Clone)]
+pub struct Kept {
+    document: Document,
+    sweep: Option<Shared<Sweep>>,
+    are_all_meant: bool,
 }
 
 impl ProjectState {
@@ -52,11 +61,6 @@ impl ProjectState {
         let file = self.file.as_ref();
         file.filter(|(_, project)| *project == document.project)
             .map(|(path, _)| path)
-    }
-
-    /// The document as it is now is what its file says.
-    pub(in crate::app) fn keep_as_saved(&mut self, document: &Document) {
-        self.saved = Some(document.clone());
     }
 
     /// The newest session that its program did not live to save.
@@ -77,6 +81,29 @@ impl Document {
 }
 
 impl AppState {
+    /// The work as it is now.
+    pub(in crate::app) fn kept(&self) -> Kept {
+        Kept {
+            document: self.document.clone(),
+            sweep: self.matching.sweep(&self.document).cloned(),
+            are_all_meant: self.parts.are_all_meant(&self.document),
+        }
+    }
+
+    /// True if the work is as it was when it was kept; nothing is copied to tell.
+    fn is_as(&self, kept: Option<&Kept>) -> bool {
+        kept.is_some_and(|kept| {
+            kept.document == self.document
+                && kept.sweep.as_ref() == self.matching.sweep(&self.document)
+                && kept.are_all_meant == self.parts.are_all_meant(&self.document)
+        })
+    }
+
+    /// The work as it is now is what its file says.
+    pub(in crate::app) fn keep_as_saved(&mut self) {
+        self.project.saved = Some(self.kept());
+    }
+
     /// The file of the project, if it has one.
     pub fn project_path(&self) -> Option<&PathBuf> {
         self.project.path_of(&self.document)
@@ -155,7 +182,7 @@ impl AppState {
 
     /// True if closing the window now would lose something.
     pub fn is_unsaved(&self) -> bool {
-        self.has_work() && self.project.saved.as_ref() != Some(&self.document)
+        self.has_work() && !self.is_as(self.project.saved.as_ref())
     }
 
     /// True if closing the window now would lose something done or running: it is asked first.
@@ -185,11 +212,8 @@ impl AppState {
     /// True if there is something new to be kept in case of a crash, and no drag is under way.
     pub fn needs_autosave(&self) -> bool {
         let is_moving = self.moving.is_moving();
-        let is_known = |(kept, has_sweep): &(Document, bool)| {
-            *kept == self.document && *has_sweep == self.matching.sweep(&self.document).is_some()
-        };
         let is_wanted = self.settings.keeps_work && !is_moving && self.has_work();
-        is_wanted && !self.project.autosaved.as_ref().is_some_and(is_known)
+        is_wanted && !self.is_as(self.project.autosaved.as_ref())
     }
 
     /// Keeps the session in case of a crash, if there is something new.
@@ -197,8 +221,7 @@ impl AppState {
         if !self.needs_autosave() {
             return Vec::new();
         }
-        let has_sweep = self.matching.sweep(&self.document).is_some();
-        self.project.autosaved = Some((self.document.clone(), has_sweep));
+        self.project.autosaved = Some(self.kept());
         vec![Effect::Autosave(Box::new(self.to_project(0)))]
     }
 

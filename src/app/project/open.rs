@@ -285,7 +285,7 @@ impl AppState {
             self.settings.remember_path(&request.path, now);
             self.project.file = Some((request.path, self.document.project));
             self.project.opened_at = Some(project.saved_at);
-            self.project.saved = Some(self.document.clone());
+            self.keep_as_saved();
         }
         Vec::new()
     }

@@ -177,9 +177,16 @@ impl ViewState {
         let before = std::mem::replace(self.rooms.get_mut(role), room);
         let of = self.camera_of(role);
         let covers_part = room.has_legend_where_free(&before) && self.is_as_close_as_fitted(of);
-        if covers_part || self.is_fitted(of) {
+        // A line more in the header.
+        let may_stay = self.is_moved_by_hand && room.aspect == before.aspect;
+        if covers_part || self.is_fitted(of) && !may_stay {
             self.fit_again(of, scene);
         }
+    }
+
+    /// The stamped part was moved by hand.
+    pub(in crate::app) fn stay(&mut self) {
+        self.is_moved_by_hand = true;
     }
 
     /// What a window shows whole stays so, once it shows more.
@@ -212,6 +219,7 @@ impl ViewState {
     }
 
     fn refit(&mut self, role: Role, room: &ViewRoom, scene: &Scene<'_>) {
+        self.is_moved_by_hand = false;
         let stamped_pose = stamped_pose(role, scene);
         let mut points = Vec::new();
         for of in self.shown_in(role) {
@@ -289,7 +297,7 @@ impl ViewState {
         (!all.is_empty()).then_some(all)
     }
 
-    fn toggle_move_over(&mut self, scene: &Scene<'_>) {
+    pub(in crate::app) fn toggle_move_over(&mut self, scene: &Scene<'_>) {
         let can_move_over = scene.document.has_both_parts().is_ok();
         if self.is_moved_over {
             self.is_moved_over = false;
@@ -311,6 +319,11 @@ impl ViewState {
         if role == Role::Stamped {
             self.look_at_sheet(scene);
         }
+        self.fit_part(role, scene);
+    }
+
+    /// Shows a part whole from where it is seen, or both when moved over.
+    pub(in crate::app) fn fit_part(&mut self, role: Role, scene: &Scene<'_>) {
         self.fit_all(role, scene);
         if self.is_moved_over {
             self.fit_all(Role::Crash, scene);
@@ -343,7 +356,7 @@ impl ViewState {
             return;
         };
         let normal = part.facts.mean_normal;
-        if self.are_linked || normal.norm() == 0.0 {
+        if self.are_linked || self.is_moved_over || normal.norm() == 0.0 {
             return;
         }
         let pose = *scene.document.crash_from_stamped();
@@ -373,7 +386,8 @@ impl AppState {
         bounds
     }
 
-    fn bounds_of(&self, role: Role) -> Aabb {
+    /// Box around a part in the space of the crash model; empty if it is not loaded.
+    pub(in crate::app) fn bounds_of(&self, role: Role) -> Aabb {
         let Some(part) = self.document.part(role) else {
             return Aabb::empty();
         };

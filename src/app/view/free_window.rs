@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::ColorBy;
+use crate::app::facts::n_alternatives;
 use crate::app::{AppState, MapPicture};
 use crate::geometry::Similarity;
 use crate::role::Role;
@@ -102,6 +103,12 @@ impl AppState {
                 Some(first.target_from_source)
             }
         }
+    }
+
+    /// True if another pose fits nearly as well as that of the result.
+    pub fn has_alike_pose(&self) -> bool {
+        let result = self.document.current_result();
+        result.is_some_and(|result| n_alternatives(&result.run) > 0)
     }
 
     /// What the colours of a window say.

@@ -34,6 +34,8 @@ pub struct ViewState {
     pub rooms: PerRole<ViewRoom>,
     /// How the cameras were fitted last: one that is still there is fitted again when its window changes.
     fitted: PerRole<Option<Fitted>>,
+    /// The stamped part was moved by hand since: what lies on the screen stays there, so that the hand finds it.
+    is_moved_by_hand: bool,
     /// Rotation and zoom of one window follow the other.
     pub are_linked: bool,
     /// Turntable or free.
@@ -80,6 +82,7 @@ impl Default for ViewState {
             n_restored: 0,
             rooms: PerRole::default(),
             fitted: PerRole::default(),
+            is_moved_by_hand: false,
             are_linked: false,
             orbit_style: OrbitStyle::Turntable,
             pivot: PerRole::default(),

@@ -47,8 +47,8 @@ pub(crate) struct HolePair {
 }
 
 impl Hole {
-    /// How much its radius is larger than another's. Chords of the few edges of a coarse mesh make a round hole smaller,
-    /// not its circle; a square with a node at each corner only has a circle too.
+    /// How much its radius is larger than another's. Chords of the few edges of a coarse mesh make a round hole
+    /// smaller, not its circle; a square with a node at each corner only has a circle too.
     fn wider_than(&self, other: &Self) -> f64 {
         match (self.circle, other.circle) {
             (Some(own), Some(others)) => own.radius - others.radius,

@@ -25,6 +25,13 @@ const LEAST_OF_END: f64 = 0.5;
 /// More nodes that lie far apart are no local difference: the places show them.
 const MOST_FAR: usize = 4000;
 
+/// Distances are measured to about a hundredth of themselves: a second layer of the sheet, a thickness away, is no more
+/// than a thickness away.
+const MEASURED: f64 = 1.01;
+
+/// A node is looked at closely if a rough estimate of what nothing explains there comes so near the limit.
+const ROUGHLY: f64 = 0.7;
+
 /// Elements cut narrow beads and the edges of wide ones short. A group that is not so many edges wide may be that:
 /// edges of the mesh that the places were measured against, because the places themselves are nodes, which lie on the
 /// sheet.
@@ -143,13 +150,14 @@ impl LocalSearch<'_> {
 
     /// What the nodes say that lie far apart.
     fn among_far(&self) -> Vec<Difference> {
-        let far = &self.evidence.far;
-        if far.iter().any(|far| far.nodes.len() > MOST_FAR) {
-            return Vec::new();
-        }
-        let met = self.evidence.of_far();
+        let contacts = &self.evidence.contacts;
+        let is_asked = |point: &Point3, normal: &Vector3, gap: f64| {
+            let left = self.fit.left_of((point, normal), gap, contacts);
+            left.abs() > ROUGHLY * self.tolerance.remainder
+        };
+        let met = self.evidence.of_near(is_asked, MOST_FAR);
         let [of_source, of_target] = [0, 1].map(|side| {
-            let per_node = far[side].per_node as f64;
+            let per_node = self.evidence.near[side].per_node as f64;
             let apart = |contact| {
                 let left = self.fit.left_at(contact, &self.evidence.contacts);
                 self.apart(contact, (left, true), per_node)
@@ -224,7 +232,7 @@ impl LocalSearch<'_> {
             at: worst.contact.point,
             is_end,
         };
-        (found.by > limit).then_some(found)
+        (found.by > MEASURED * limit).then_some(found)
     }
 
     fn is_source_smaller(&self) -> bool {
@@ -284,8 +292,8 @@ impl<'a, 'b> Group<'a, 'b> {
     }
 
     /// Whether nodes of the other part lie off beside it to the same side. Nodes lie on the sheet and facets cut it
-    /// short, so that of one sheet the nodes of each part would lie in front of the other's facets. Where the other part
-    /// has large elements, a few of its nodes and many places are as much.
+    /// short, so that of one sheet the nodes of each part would lie in front of the other's facets. Where the other
+    /// part has large elements, a few of its nodes and many places are as much.
     fn is_seen_by(&self, nodes: &[Off]) -> bool {
         let is_alike = |(at, left): &&Off| self.has_beside(at, |place| left * place.left > 0.0);
         let n_seen = nodes.iter().filter(is_alike).count();

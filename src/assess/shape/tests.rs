@@ -4,7 +4,7 @@ mod beads;
 
 use std::f64::consts::PI;
 
-use super::super::coverage::coverage_and_far;
+use super::super::coverage::coverage_and_near;
 use super::super::statements::{Asked, Statements, statements};
 use super::super::tolerance::{AssessSettings, Distances};
 use super::*;
@@ -38,13 +38,10 @@ fn statement(source: &Surface, target: &Surface) -> ShapeStatement {
         ..AssessSettings::default()
     };
     let (pair, pose) = ([source, target], Similarity::identity());
-    let Distances {
-        tolerance, reach, ..
-    } = Distances::of(source, target, 1.0, &settings);
-    let range = [tolerance.remainder, reach];
-    let measured = coverage_and_far(pair, &pose, reach, range, &Monitor::silent());
+    let reach = Distances::of(source, target, 1.0, &settings).reach;
+    let measured = coverage_and_near(pair, &pose, reach, reach, &Monitor::silent());
     let asked = Asked {
-        far: measured.unwrap().1,
+        near: measured.unwrap().1,
         ..Asked::default()
     };
     statements(pair, &pose, asked, &settings).shape

@@ -55,7 +55,8 @@ pub fn as_well(score_ratio: f64) -> &'static str {
     )
 }
 
-/// The words for a pose that is better than the best, equal to it, or worse. The difference of equal ones rounds to 0 %.
+/// The words for a pose that is better than the best, equal to it, or worse. The difference of equal ones rounds to 0
+/// %.
 fn by_ratio(score_ratio: f64, [better, equal, worse]: [&'static str; 3]) -> &'static str {
     match score_ratio {
         ratio if (ratio - 1.0).abs() < 0.005 => equal,

@@ -465,7 +465,8 @@ impl Reader<'_> {
         let max_files = self.options.max_files;
         if self.assembly.files.len() >= max_files {
             let message = format!(
-                "is left out: {max_files} files were read, which is the limit; raise it with --read-limit or in the preferences"
+                "is left out: {max_files} files were read, which is the limit; raise it with --read-limit or in the \
+                preferences"
             );
             return Err((DiagnosticKind::LimitReached, message));
         }

@@ -146,7 +146,7 @@ pub fn exchange_thickness(
 }
 
 /// What ends the lines of a deck.
-fn line_end_of(bytes: &[u8]) -> &'static [u8] {
+pub(super) fn line_end_of(bytes: &[u8]) -> &'static [u8] {
     match memchr::memchr(b'\n', bytes) {
         Some(at) if at > 0 && bytes[at - 1] == b'\r' => b"\r\n",
         _ => b"\n",

@@ -1,10 +1,6 @@
 //! Numbers in fixed columns, fast: integers, and reals with exponent as Fortran's `1PE16.8` has them.
 
-/// Powers of ten that are exact as doubles.
-const EXACT: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
-    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
-];
+use super::number::EXACT_POWERS;
 
 /// Appends an integer at the right of `width` columns; a longer one takes the columns it needs.
 pub(super) fn push_int(text: &mut Vec<u8>, mut value: u64, width: usize) {
@@ -72,9 +68,9 @@ fn digits_of(value: f64, decimals: usize) -> Option<(u64, i32)> {
     for _ in 0..2 {
         let shift = decimals as i32 - exponent;
         let scaled = if shift >= 0 {
-            value * EXACT.get(shift as usize)?
+            value * EXACT_POWERS.get(shift as usize)?
         } else {
-            value / EXACT.get(-shift as usize)?
+            value / EXACT_POWERS.get(-shift as usize)?
         };
         let digits = scaled.round() as u64;
         if digits >= limit {

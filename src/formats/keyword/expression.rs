@@ -93,13 +93,13 @@ pub enum ExpressionProblem {
         found: usize,
     },
     /// Division by zero.
-    #[error("a division by zero stands")]
+    #[error("division by zero")]
     DivisionByZero,
     /// Overflow, a root of a negative number and the like.
-    #[error("a value that is not a finite number arises")]
+    #[error("the result is not a finite number")]
     NotFinite,
     /// Nested too deeply.
-    #[error("more than {MAX_DEPTH} nested levels stand")]
+    #[error("nested more than {MAX_DEPTH} levels deep")]
     TooDeep,
     /// A number that cannot be read.
     #[error("{0:?} is not a number")]

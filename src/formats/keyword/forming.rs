@@ -2,15 +2,17 @@
 //! sets; those of solids and thick shells are read past and counted.
 
 mod checks;
+mod lines;
 
 use std::iter::Peekable;
 use std::ops::Range;
 use std::sync::Arc;
 
+use self::lines::{LARGE, Lines, SMALL, SMALL_TENSOR};
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
 use super::super::model::{Forming, StrainPoint, StressPoint};
 use super::block::{Block, Cards, next_line};
-use super::card::{Card, EIGHT_BY_10, FIVE_BY_16, FieldError};
+use super::card::{Card, EIGHT_BY_10, FieldError};
 use super::nodes::shifted;
 use super::resolve::with_position;
 use super::source_file::{Place, SourceFile};
@@ -198,6 +200,8 @@ struct Reader<'a, 'd> {
     values: Vec<f64>,
     /// The first card of the element at hand.
     head: Option<Card<'a>>,
+    /// Values that the last line holds beyond those that were asked for.
+    beyond: Vec<f64>,
     /// The first unreadable field of the element at hand.
     bad_field: Option<FieldError>,
     /// Where the line after the last card begins.
@@ -215,26 +219,6 @@ fn is_head(card: &Card<'_>) -> bool {
     (0..n_fields).all(is_whole) && card.id(EIGHT_BY_10, 0).is_ok_and(|id| id > 0)
 }
 
-/// How the lines of one kind of data are cut.
-#[derive(Debug, Clone, Copy)]
-struct Lines {
-    widths: &'static [u8],
-    per_line: usize,
-}
-
-const SMALL: Lines = Lines {
-    widths: EIGHT_BY_10,
-    per_line: 8,
-};
-const SMALL_TENSOR: Lines = Lines {
-    widths: EIGHT_BY_10,
-    per_line: 6,
-};
-const LARGE: Lines = Lines {
-    widths: FIVE_BY_16,
-    per_line: 5,
-};
-
 impl<'a, 'd> Reader<'a, 'd> {
     fn new(block: &'a Block<'a>, units: ResultUnits, diagnostics: &'d mut Diagnostics) -> Self {
         Self {
@@ -243,6 +227,7 @@ impl<'a, 'd> Reader<'a, 'd> {
             units,
             diagnostics,
             values: Vec::new(),
+            beyond: Vec::new(),
             head: None,
             bad_field: None,
             after: block.body.start,
@@ -306,7 +291,10 @@ impl<'a, 'd> Reader<'a, 'd> {
             };
             self.check_size(head, &point.stress);
             points.push(point);
-            history.extend_from_slice(self.take(n_history, lines)?);
+            // Some tools go on with them where the line of the plastic strain has room.
+            let n_beyond = self.beyond.len().min(n_history);
+            history.extend(self.beyond.drain(..n_beyond));
+            history.extend_from_slice(self.take(n_history - n_beyond, lines)?);
             tensors.extend(tensors_in(self.take(n_tensor, tensor_lines)?));
             if let Some(tensor) = tensors.last() {
                 self.check_size(head, tensor);
@@ -530,6 +518,10 @@ impl<'a, 'd> Reader<'a, 'd> {
                 return Err(Stop);
             };
             let found = self.append(&card, expected, lines);
+            let fields = expected..card.n_fields(lines.widths[0]).min(lines.per_line);
+            let beyond = fields.map_while(|i| card.real(lines.widths, i).ok().flatten());
+            self.beyond.clear();
+            self.beyond.extend(beyond);
             let missing = expected - found;
             let width = lines.widths[0];
             let rest_follows = self.values.len() < n_needed

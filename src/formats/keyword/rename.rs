@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use super::block::{Block, Blocks};
+use super::exchange::line_end_of;
 use super::include::{layout_of_keyword, read_includes, read_paths};
 use super::source_file::SourceFile;
 use crate::formats::model::IncludedAs;
@@ -96,10 +97,7 @@ pub fn rename_includes(
     new_name: impl Fn(&str) -> Option<String>,
 ) -> (Option<Vec<u8>>, Vec<String>) {
     let bytes = deck.bytes();
-    let line_end = match memchr::memchr(b'\n', bytes) {
-        Some(at) if bytes[..at].ends_with(b"\r") => "\r\n",
-        _ => "\n",
-    };
+    let line_end = line_end_of(bytes);
     let (mut copy, mut done, mut renamed) = (Vec::new(), 0, Vec::new());
     for_blocks(deck, included_as, |block| {
         for (name, place) in names(block, bytes) {
@@ -108,7 +106,8 @@ pub fn rename_includes(
             };
             copy.reserve(bytes.len() - done);
             copy.extend_from_slice(&bytes[done..place.start]);
-            copy.extend_from_slice(lines.join(line_end).as_bytes());
+            let lines: Vec<&[u8]> = lines.iter().map(|line| line.as_bytes()).collect();
+            copy.extend(lines.join(line_end));
             done = place.end;
             renamed.push(name);
         }

@@ -435,7 +435,7 @@ fn carry_out(
     let turned = match motion {
         Motion::Scale { .. } => Turned::default(),
         Motion::Include { results: span, .. } => {
-            tell_files(model, motion, &matrix);
+            move_files(model, motion, &matrix);
             results.turn_span(span, &matrix)
         }
         Motion::NodeSet { .. } => results.turn_moved(model, &indices, &matrix),
@@ -454,9 +454,9 @@ fn carry_out(
     Ok(())
 }
 
-/// Tells the files of an include how the motion turns them, and reverses the corners of their elements where it
+/// Keeps with the files of an include how the motion turns them, and reverses the corners of their elements where it
 /// mirrors them.
-fn tell_files(model: &mut Model, motion: &Motion, matrix: &Matrix4) {
+fn move_files(model: &mut Model, motion: &Motion, matrix: &Matrix4) {
     let Motion::Include {
         shells,
         solids,

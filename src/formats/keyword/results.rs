@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
 use super::super::model::{Forming, IdIndex, Model};
-use super::super::moved::reverse_points;
+use super::super::moved::{along_other_way, reverse_points};
 use super::forming::RawForming;
 use super::resolve::with_position;
 use super::source_file::Place;
@@ -95,6 +95,8 @@ pub(super) struct Results {
     strain_source: Vec<usize>,
     /// From element id to shell, made when it is needed.
     shell_of: Option<IdIndex>,
+    /// The shells whose stresses are in element axes and turn with them.
+    in_element_axes: HashSet<u64>,
 }
 
 impl Results {
@@ -157,6 +159,7 @@ impl Results {
             stress_source,
             strain_source,
             shell_of: None,
+            in_element_axes: model.shells_in_element_axes(),
         }
     }
 
@@ -193,8 +196,9 @@ impl Results {
         stress.extend(of_sets(&self.stress_source, self.n_own_stress, set_stress));
         let mut strain: Vec<usize> = (from.strain..to.strain).collect();
         strain.extend(of_sets(&self.strain_source, self.n_own_strain, set_strain));
-        let turned = self.turn(&stress, &strain, motion);
-        if mirrors(motion) {
+        let is_mirror = mirrors(motion);
+        let turned = self.turn(&stress, &strain, (motion, is_mirror));
+        if is_mirror {
             reverse_points(&mut self.forming, stress, strain);
         }
         turned
@@ -239,11 +243,18 @@ impl Results {
         self.shell_of = Some(shell_of);
         Turned {
             n_partly,
-            ..self.turn(&stress, &strain, motion)
+            ..self.turn(&stress, &strain, (motion, false))
         }
     }
 
-    fn turn(&mut self, stress: &[usize], strain: &[usize], motion: &Matrix4) -> Turned {
+    /// Turns tensors. Those in element axes turn with their elements, and change only where the motion
+    /// reverses the corners of these.
+    fn turn(
+        &mut self,
+        stress: &[usize],
+        strain: &[usize],
+        (motion, reverses): (&Matrix4, bool),
+    ) -> Turned {
         let n = stress.len() + strain.len();
         let (rotation, n_stretched) = match rotation_of(motion) {
             Rotation::None => return Turned::default(),
@@ -257,11 +268,18 @@ impl Results {
             Rotation::Stretched(rotation) => (rotation, n),
         };
         for &index in stress {
+            let id = self.forming.stress(index).element_id;
+            let is_global = !self.in_element_axes.contains(&id);
+            let turned = |tensor: &[f64; 6]| match (is_global, reverses) {
+                (true, _) => rotated(tensor, &rotation),
+                (false, true) => along_other_way(tensor),
+                (false, false) => *tensor,
+            };
             for point in self.forming.stress_points_mut(index) {
-                point.stress = rotated(&point.stress, &rotation);
+                point.stress = turned(&point.stress);
             }
             for tensor in self.forming.tensors_mut(index) {
-                *tensor = rotated(tensor, &rotation);
+                *tensor = turned(tensor);
             }
         }
         for &index in strain {

@@ -381,7 +381,12 @@ impl Reader<'_> {
         self.chunk.stacks.push(plies);
         let own = self.chunk.extras.last_mut();
         match own.filter(|extra| extra.shell == shell) {
-            Some(extra) => extra.plies = Some(stack),
+            Some(extra) => {
+                extra.plies = Some(stack);
+                for own in extra.thickness.iter_mut().filter(|own| **own == 0.0) {
+                    *own = sum;
+                }
+            }
             None => self.chunk.extras.push(ShellExtra {
                 shell,
                 thickness: [sum; 4],

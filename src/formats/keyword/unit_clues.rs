@@ -77,7 +77,8 @@ impl UnitClues {
         };
         (!is_same).then(|| {
             format!(
-                "a title or comment names {}, density and modulus of the materials are those of {}; the first is believed",
+                "a title or comment names {}, density and modulus of the materials are those of {}; the first is \
+                believed",
                 stated.units.label(),
                 found.units.label()
             )

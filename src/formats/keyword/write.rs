@@ -93,7 +93,8 @@ pub fn keyword_line(layout: Layout) -> &'static str {
     }
 }
 
-/// A deck of a width that has the nodes of a model, in fields as wide as their ids ask for, and goes on without its end.
+/// A deck of a width that has the nodes of a model, in fields as wide as their ids ask for, and goes on without its
+/// end.
 pub fn write_nodes(model: &Model, layout: Layout, monitor: &Monitor) -> Result<Vec<u8>, Cancelled> {
     let largest = model.nodes.ids().iter().copied().max();
     let mut deck = Writer {

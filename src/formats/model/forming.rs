@@ -13,6 +13,14 @@ pub struct StressPoint {
     pub plastic_strain: f64,
 }
 
+impl StressPoint {
+    /// Stress times `factor` and effective plastic strain, in one list.
+    pub fn state(&self, factor: f64) -> [f64; 7] {
+        let [xx, yy, zz, xy, yz, zx] = self.stress.map(|stress| stress * factor);
+        [xx, yy, zz, xy, yz, zx, self.plastic_strain]
+    }
+}
+
 /// Strain at one point of a shell.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StrainPoint {

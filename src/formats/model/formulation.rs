@@ -1,5 +1,7 @@
 //! What a deck says of its shell elements: formulation, layers, integration rule.
 
+use std::collections::HashSet;
+
 use super::Model;
 
 /// Layers of a section whose card names none.
@@ -72,6 +74,18 @@ impl Model {
         let set = self.shell_control.element_axes_set;
         let named = self.sets.parts.get(&set);
         set != 0 && named.is_none_or(|named| named.ids.contains(&part))
+    }
+
+    /// Ids of the shells whose stresses are read in element axes. O(shells).
+    pub fn shells_in_element_axes(&self) -> HashSet<u64> {
+        if self.shell_control.element_axes_set == 0 {
+            return HashSet::new();
+        }
+        let parts = self.parts.iter();
+        let is_meant: Vec<bool> = parts.map(|p| self.is_in_element_axes(p.id)).collect();
+        let shells = self.shells.iter();
+        let meant = shells.filter(|shell| is_meant[shell.part as usize]);
+        meant.map(|shell| shell.id).collect()
     }
 
     /// The formulation of a part's shells, whose layers are its plies where it has some; `None` if its section

@@ -176,10 +176,13 @@ pub struct Plies {
 impl Part {
     /// Mean of the four corner thicknesses.
     pub fn mean_thickness(&self) -> Option<f64> {
-        self.thickness
-            // By pairs, so that the mean of equal corners is their value.
-            .map(|[a, b, c, d]| ((a + b) + (c + d)) / 4.0)
+        self.thickness.map(mean_of_corners)
     }
+}
+
+/// By pairs, so that the mean of equal corners is their value.
+fn mean_of_corners([a, b, c, d]: [f64; 4]) -> f64 {
+    ((a + b) + (c + d)) / 4.0
 }
 
 /// `*SECTION_SHELL`: thickness of the parts that name it.
@@ -359,8 +362,8 @@ pub struct Model {
     /// Thickness of the plies, from the bottom side up, of shells that have their own (`_COMPOSITE`); stacks that
     /// are alike stand here once.
     pub ply_stacks: Vec<Vec<f64>>,
-    /// Shells that have a distance of their nodes from the mid-surface on a card (`_OFFSET`), which is not kept: indices
-    /// into [`Model::shells`].
+    /// Shells that have a distance of their nodes from the mid-surface on a card (`_OFFSET`), which is not kept:
+    /// indices into [`Model::shells`].
     pub offset_shells: Vec<u32>,
     /// Solids and thick shells whose nodes all exist.
     pub solids: Vec<Solid>,
@@ -425,12 +428,8 @@ impl Model {
 
     /// True if the file holds results of forming: stresses, strains, or a thickness of its elements' own.
     pub fn has_results(&self) -> bool {
-        let mut shells = 0..self.shells.len() as u32;
-        let has_thickness = |shell: u32| {
-            let extra = self.shell_extra(shell);
-            extra.is_some_and(|extra| extra.thickness != [0.0; 4])
-        };
-        !self.forming.is_empty() || shells.any(has_thickness)
+        let mut extras = self.shell_extras.iter();
+        !self.forming.is_empty() || extras.any(|extra| extra.thickness != [0.0; 4])
     }
 
     /// The material of a part, by index; `None` if it is not in the deck. O(materials).
@@ -457,6 +456,11 @@ impl Model {
             corners[3] = a + ((b - a) + (c - a)) / 3.0;
         }
         Some(corners)
+    }
+
+    /// Mean thickness of a shell, as of the corners that [`Model::shell_thickness`] gives.
+    pub fn mean_shell_thickness(&self, index: u32) -> Option<f64> {
+        self.shell_thickness(index).map(mean_of_corners)
     }
 
     /// The plies of a shell that has its own: their index and thickness. O(log shells).

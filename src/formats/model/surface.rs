@@ -72,6 +72,14 @@ pub enum SelectionError {
     /// The chosen elements have no triangle with area.
     #[error("there is no shell or solid with area")]
     Empty,
+    /// A set holds nothing that is in the file.
+    #[error("{kind} set {id} holds no {kind} of the file")]
+    EmptySet {
+        /// `"part"`, `"shell"` or `"node"`.
+        kind: &'static str,
+        /// The set's id.
+        id: u64,
+    },
     /// The triangles make no mesh.
     #[error("the surface cannot be built: {0}")]
     Mesh(#[from] MeshError),
@@ -215,13 +223,26 @@ impl Model {
                     .copied()
                     .filter(|i| known.contains(i))
                     .collect();
+                if ids.is_empty() {
+                    return Err(SelectionError::EmptySet {
+                        kind: "part",
+                        id: *id,
+                    });
+                }
                 self.chosen_parts(&ids)
             }
             Selection::ShellSet(id) => {
                 let set = self.sets.shells.get(id).ok_or(no_set("shell", *id))?;
                 let ids: BTreeSet<u64> = set.ids.iter().copied().collect();
                 let shells = self.shells.iter().map(|shell| ids.contains(&shell.id));
-                Ok(Chosen::Shells(shells.collect()))
+                let shells: Vec<bool> = shells.collect();
+                if !shells.contains(&true) {
+                    return Err(SelectionError::EmptySet {
+                        kind: "shell",
+                        id: *id,
+                    });
+                }
+                Ok(Chosen::Shells(shells))
             }
             Selection::NodeSet(id) => {
                 let set = self.sets.nodes.get(id).ok_or(no_set("node", *id))?;

@@ -1,5 +1,6 @@
 //! Another mapper's result, or the solver's own file of mapped states, beside ours, element by element.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -8,11 +9,15 @@ use super::convert::element_index;
 use super::record::{DistributionRecord, PairRecord, pair_of};
 use super::{MapRun, PipelineError, ShownValue};
 use crate::formats::keyword::write::write_nodes;
+use crate::formats::model::Shell;
 use crate::formats::{self, Disk, Memory, Model, ReadOptions, Replaced};
 use crate::mapping::{Layered, PLASTIC_STRAIN, distribution};
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::forming_values::{FormingValue, LayerChoice};
 use crate::pipeline::load::LoadedPart;
+
+/// Values that are read between two questions to the monitor.
+const CHUNK: usize = 1 << 14;
 
 /// What other files say of the elements of a mapping.
 #[derive(Debug, Clone)]
@@ -43,27 +48,33 @@ impl OtherResult {
         let mut n_found = 0_usize;
         for path in files {
             let model = read_other(path, crash, monitor)?;
-            for (shell, index_in_model) in model.shells.iter().zip(0..) {
-                let has_own = model
-                    .shell_extra(index_in_model)
-                    .is_some_and(|extra| extra.thickness != [0.0; 4]);
-                let corners = model.shell_thickness(index_in_model).filter(|_| has_own);
-                if let (Some(corners), Some(&element)) = (corners, index.get(&shell.id)) {
-                    thickness[element] = corners.iter().sum::<f64>() / 4.0 * factor;
+            check_mesh(path, &model, (run, crash), &index)?;
+            for (number, extra) in model.shell_extras.iter().enumerate() {
+                if number % CHUNK == 0 {
+                    monitor.check()?;
+                }
+                let has_own = extra.thickness != [0.0; 4];
+                let mean = model.mean_shell_thickness(extra.shell).filter(|_| has_own);
+                let id = model.shells[extra.shell as usize].id;
+                if let (Some(mean), Some(&element)) = (mean, index.get(&id)) {
+                    thickness[element] = mean * factor;
                     n_found += 1;
                 }
             }
-            for stress in model.forming.stresses() {
+            for (number, stress) in model.forming.stresses().enumerate() {
+                if number % CHUNK == 0 {
+                    monitor.check()?;
+                }
                 if let Some(&element) = index.get(&stress.element_id) {
-                    let points = stress.points.iter().map(|point| {
-                        let [xx, yy, zz, xy, yz, zx] = point.stress;
-                        (point.t, [xx, yy, zz, xy, yz, zx, point.plastic_strain])
-                    });
-                    states.set(element, points);
+                    let points = stress.points.iter();
+                    states.set(element, points.map(|p| (p.t, p.state(1.0))));
                     n_found += 1;
                 }
             }
-            for strain in model.forming.strains() {
+            for (number, strain) in model.forming.strains().enumerate() {
+                if number % CHUNK == 0 {
+                    monitor.check()?;
+                }
                 if let Some(&element) = index.get(&strain.element_id) {
                     let points = strain.points.iter().map(|point| (point.t, point.strain));
                     strains.set(element, points);
@@ -92,6 +103,37 @@ impl OtherResult {
             || self.states.of(element).is_some()
             || self.strains.of(element).is_some()
     }
+}
+
+/// An error where most of the elements of a file with the ids of ours have other nodes: it says nothing of this mesh.
+fn check_mesh(
+    path: &Path,
+    other: &Model,
+    (run, crash): (&MapRun, &LoadedPart),
+    index: &HashMap<u64, usize>,
+) -> Result<(), PipelineError> {
+    let nodes = |model: &Model, shell: &Shell| {
+        let mut ids = shell.nodes.map(|node| model.nodes.ids()[node as usize]);
+        ids.sort_unstable();
+        ids
+    };
+    let (mut n_same_id, mut n_other_nodes) = (0_usize, 0_usize);
+    for shell in &other.shells {
+        let Some(&element) = index.get(&shell.id) else {
+            continue;
+        };
+        let own = &crash.model.shells[run.shells[element] as usize];
+        n_same_id += 1;
+        n_other_nodes += usize::from(nodes(other, shell) != nodes(&crash.model, own));
+    }
+    if 2 * n_other_nodes > n_same_id {
+        return Err(PipelineError::OtherMesh {
+            path: path.to_owned(),
+            n_same_id,
+            n_other_nodes,
+        });
+    }
+    Ok(())
 }
 
 fn read_other(path: &Path, crash: &LoadedPart, monitor: &Monitor) -> Result<Model, PipelineError> {

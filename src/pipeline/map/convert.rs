@@ -101,11 +101,8 @@ pub(super) fn source_part(
             monitor.check()?;
         }
         if let Some(&element) = index.get(&stress.element_id) {
-            let points = stress.points.iter().map(|point| {
-                let [xx, yy, zz, xy, yz, zx] = point.stress.map(|s| s * stress_factor);
-                (point.t, [xx, yy, zz, xy, yz, zx, point.plastic_strain])
-            });
-            states.set(element, points);
+            let points = stress.points.iter();
+            states.set(element, points.map(|p| (p.t, p.state(stress_factor))));
             if recipe.options.quantities.history {
                 let layers = (0..).zip(stress.points).map(|(i, point)| {
                     let kept = LayerHistory {
@@ -214,10 +211,8 @@ pub(super) fn target_part(
         n_plane.push(points);
     }
     let nominal = shells.shells.iter().map(|&shell| {
-        let corners = model.shell_thickness(shell);
-        corners.map_or(f64::NAN, |corners| {
-            corners.iter().sum::<f64>() / 4.0 * factor
-        })
+        let mean = model.mean_shell_thickness(shell);
+        mean.map_or(f64::NAN, |mean| mean * factor)
     });
     Ok(TargetPart {
         rules,

@@ -4,6 +4,7 @@ mod balance;
 mod compare;
 mod convert;
 mod default_thickness;
+mod freed_aside;
 mod head;
 mod includes;
 mod lists;
@@ -367,9 +368,9 @@ fn check(
     let mut checks = MapChecks::default();
     let back = match mapping::map_back(placed, target, mapped, options, monitor) {
         Ok(back) => back,
-        Err(mapping::MappingError::Cancelled(cancelled)) => return Err(cancelled.into()),
-        // Nothing was mapped, which the counts say.
-        Err(_) => return Ok(checks),
+        // Nothing was mapped, which the counts say, or only strains, which are not mapped back.
+        Err(mapping::MappingError::NoResults) => return Ok(checks),
+        Err(error) => return Err(error.into()),
     };
     monitor.check()?;
     let sources = placed

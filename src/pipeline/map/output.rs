@@ -16,14 +16,12 @@ use crate::formats::keyword::state_cards::{Pieces, ShellState, StateFormat, writ
 use crate::formats::keyword::write::keyword_line;
 use crate::formats::model::{IncludedAs, ReadFile};
 use crate::geometry::chunks::for_chunks;
+use crate::mapping::LayerRule;
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::names::file_name;
 use crate::pipeline::read_again::ReadAgain;
 use crate::text::counted;
-
-/// Where strains of the two surfaces stand.
-const SURFACES: [f64; 2] = [-1.0, 1.0];
 
 /// What is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -226,7 +224,7 @@ fn check_ids(run: &MapRun, model: &Model, monitor: &Monitor) -> Result<(), Pipel
     match twice {
         Some(id) => Err(PipelineError::MapOutput(format!(
             "shell {id} is defined twice among the elements that are mapped onto; give each an id of its own in \
-             the crash deck (shapematch info names all)"
+             the crash deck"
         ))),
         None => Ok(()),
     }
@@ -380,9 +378,9 @@ impl MapWriter<'_> {
         let n_wanted = self.thickness.len();
         if n_found > n_wanted {
             return Err(PipelineError::MapOutput(format!(
-                "{} of the elements that are mapped onto are defined more than once; leave one card of each in the \
-                 crash deck (shapematch info names all)",
-                n_found - n_wanted
+                "{} defines elements that are mapped onto more than once ({} too many); leave one card of each",
+                self.crash.path.display(),
+                counted(n_found - n_wanted, "card")
             )));
         }
         if n_found < n_wanted {
@@ -427,6 +425,10 @@ impl MapWriter<'_> {
         decks: &[(&ReadFile, ExchangedDeck)],
         path: &Path,
     ) -> Result<Vec<MapFile>, PipelineError> {
+        let has_states = self.run.mapped.states.is_some() || self.run.mapped.strains.is_some();
+        if !has_states && !self.thickness.is_empty() {
+            return Ok(vec![new_file(path, self.elements(head, decks))]);
+        }
         let layout = decks.first().map_or(self.layout(), |(_, deck)| deck.layout);
         let mut states = keyword_line(layout).as_bytes().to_vec();
         states.extend_from_slice(head.as_bytes());
@@ -491,7 +493,7 @@ impl MapWriter<'_> {
         let mapped = &self.run.mapped;
         let rule = &self.run.target.rules[self.run.target.rule_of[element] as usize];
         let strain_places = if mapped.strains_are_at_surfaces {
-            &SURFACES[..]
+            &LayerRule::SURFACES[..]
         } else {
             rule.places()
         };

@@ -2,12 +2,13 @@
 
 use super::PipelineError;
 use super::compare::read_beside_nodes;
+use super::freed_aside::FreedAside;
 use super::old_states::read_copies;
 use super::output::{MapFiles, MapWriter, WriteKind};
 use crate::formats::Model;
 use crate::geometry::chunks::CHUNK;
 use crate::mapping::PLASTIC_STRAIN;
-use crate::monitor::{Cancelled, FreedAside};
+use crate::monitor::Cancelled;
 
 /// Digits of a small card differ from the values by up to this share of the largest.
 const SMALL_ROUNDING: f64 = 5.1e-4;
@@ -28,7 +29,10 @@ impl MapWriter<'_> {
                 WriteKind::Deck => {
                     "; if the deck turns the elements (*NODE_TRANSFORM), write an include (--write include)"
                 }
-                WriteKind::Include | WriteKind::Part => "",
+                WriteKind::Include | WriteKind::Part => {
+                    "; if cards of the elements use parameters that hold for their file alone (*PARAMETER_LOCAL), write \
+                    a copy of the deck (--write deck)"
+                }
             };
             PipelineError::MapOutput(format!(
                 "the written state reads back differently: {what}{hint}"
@@ -123,7 +127,11 @@ impl MapWriter<'_> {
                 n_plane,
                 read,
             );
-            for (own, point) in states.of(element).iter().zip(card.points) {
+            let own = states.of(element);
+            if own.len() != card.points.len() {
+                stress[0] = f64::INFINITY;
+            }
+            for (own, point) in own.iter().zip(card.points) {
                 for (a, b) in own[..6].iter().zip(point.stress) {
                     stress = [stress[0].max((a - b).abs()), stress[1].max(a.abs())];
                 }
@@ -151,6 +159,9 @@ impl MapWriter<'_> {
             }
             let own = element_of.get(&card.element_id);
             let own = own.map_or(&[][..], |&element| self.state_of(element).strains);
+            if !own.is_empty() && own.len() != card.points.len() {
+                strain[0] = f64::INFINITY;
+            }
             for (own, point) in own.iter().zip(card.points) {
                 compare(&mut strain, own, 6, 1, &point.strain);
             }

@@ -1,6 +1,8 @@
 //! One number for each element of a mapping: a mapped quantity, what the stamped element has of it, and
 //! their difference.
 
+use std::borrow::Cow;
+
 use super::{MapRun, OtherResult};
 use crate::mapping::{LayerRule, Layered, Partner};
 use crate::pipeline::forming_values::{FormingValue, LayerChoice, at_middle};
@@ -122,19 +124,23 @@ impl MapRun {
         Some([sources.reduce(f64::max)?, own?])
     }
 
+    /// Where an element's mapped strains stand.
+    fn strain_rule(&self, element: usize) -> Cow<'_, LayerRule> {
+        if self.mapped.strains_are_at_surfaces {
+            Cow::Owned(LayerRule::surfaces())
+        } else {
+            Cow::Borrowed(&self.target.rules[self.target.rule_of[element] as usize])
+        }
+    }
+
     /// The number in the middle of an element's sheet; NaN without layers.
     fn middle(&self, element: usize, value: FormingValue) -> f64 {
         let mapped = &self.mapped;
         let own = &self.target.rules[self.target.rule_of[element] as usize];
         if value.is_strain() {
-            let surfaces = LayerRule::surfaces();
-            let rule = if mapped.strains_are_at_surfaces {
-                &surfaces
-            } else {
-                own
-            };
+            let rule = self.strain_rule(element);
             let strains = mapped.strains.as_ref();
-            let middle = strains.and_then(|strains| in_middle(rule, strains.of(element)));
+            let middle = strains.and_then(|strains| in_middle(&rule, strains.of(element)));
             return middle.map_or(f64::NAN, |strain| value.of_strain(&strain));
         }
         let states = mapped.states.as_ref();
@@ -150,13 +156,8 @@ impl MapRun {
             let Some(strains) = &mapped.strains else {
                 return Vec::new();
             };
-            let surfaces = LayerRule::surfaces();
-            let rule = if mapped.strains_are_at_surfaces {
-                &surfaces
-            } else {
-                own
-            };
-            return by_layer(rule, strains.of(element), |strain| value.of_strain(strain));
+            let rule = self.strain_rule(element);
+            return by_layer(&rule, strains.of(element), |strain| value.of_strain(strain));
         }
         let states = mapped.states.as_ref();
         states.map_or_else(Vec::new, |states| {

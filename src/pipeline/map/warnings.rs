@@ -6,6 +6,7 @@ use super::ready::stress_unit_question;
 use super::{MapFiles, MapRun, PlacedPart, PoseOrigin, mapped_by_solver};
 use crate::formats::diagnostic::{DiagnosticKind, Severity};
 use crate::formats::keyword::materials::is_known_law;
+use crate::formats::model::Part;
 use crate::mapping::{Facing, MapOptions, Quantities, SourcePart, Status};
 use crate::pipeline::load::{LoadedPart, same_parts_line};
 use crate::registration::guess_unit;
@@ -25,12 +26,20 @@ fn without_results(placed: &PlacedPart<'_>, shells: &[u32]) -> Option<String> {
     let formed: BTreeSet<u32> = formed.collect();
     let all: BTreeSet<u32> = shells.iter().map(part_of).collect();
     let is_silent = |part: &&u32| !has_results[**part as usize] && !formed.contains(part);
-    let silent = all.iter().filter(is_silent);
-    let ids: Vec<u64> = silent.map(|&part| model.parts[part as usize].id).collect();
+    let silent: Vec<&Part> = (all.iter().filter(is_silent))
+        .map(|&part| &model.parts[part as usize])
+        .collect();
+    let ids: Vec<u64> = silent.iter().map(|part| part.id).collect();
+    let has_section = silent.iter().any(|part| part.thickness.is_some());
+    let what_comes = if has_section {
+        "crash elements that it alone covers get the thickness of its section and nothing else"
+    } else {
+        "nothing is mapped from there"
+    };
     let name = placed.part.file_name();
     (!ids.is_empty()).then(|| {
         format!(
-            "{name}: no forming results in {}; crash elements there get the thickness of its section and nothing else",
+            "{name}: no forming results in {}; {what_comes}",
             parts_by_id(&ids)
         )
     })

@@ -180,16 +180,11 @@ impl Group<'_> {
             return Ok(together);
         }
         let mut stay = together.members.clone();
-        let is_good = |at: &usize| self.members[*at].1.is_good;
-        if stay.iter().any(is_good) {
-            // A part that lies where a better one lies would put its values over the right ones.
-            stay.retain(is_good);
-        }
-        let rest: Vec<_> = stay
+        let all: Vec<_> = stay
             .iter()
             .map(|at| (&stamped[*at], self.members[*at].1))
             .collect();
-        let mut give_way = that_give_way(crash, &rest).into_iter();
+        let mut give_way = that_give_way(crash, &all).into_iter();
         stay.retain(|_| !give_way.next().unwrap_or(false));
         if stay.len() == stamped.len() {
             return Ok(together);

@@ -13,7 +13,7 @@ pub use record::{CAR_COLUMNS, CarCopy, CarReason, CarRecord, CarRow, CarState};
 use super::PipelineError;
 use super::error::unless_cancelled;
 use super::find_parts::{Fit, FoundParts, Presence, find_parts, guessed_units};
-use super::load::{LoadSettings, LoadedPart, load};
+use super::load::{LoadSettings, LoadedPart, load, same_parts_line};
 use super::map::{
     DefaultThickness, LEAST_AREA, MapRecipe, NewStates, car_copies, check_shells, elements_path,
 };
@@ -206,6 +206,10 @@ fn claims(
         let found = load(&file.path, &file.settings, monitor).and_then(|part| {
             row.tools_left_out = part.tools_left_out();
             let parts = PerRole::new(crash, &part);
+            if same_parts_line(parts).is_some() {
+                row.reasons.push(CarReason::SameFile);
+                return Ok(None);
+            }
             let still = Similarity::identity();
             let found = find_parts(parts, &recipe.matching, &still, monitor)?;
             if found.is_none() {

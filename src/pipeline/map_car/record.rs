@@ -39,6 +39,8 @@ impl CarState {
 pub enum CarReason {
     /// It cannot be read or mapped.
     Failed(String),
+    /// It is the crash model.
+    SameFile,
     /// No crash part fits.
     NoPart,
     /// One would if the files were in these units.
@@ -86,6 +88,9 @@ impl CarReason {
             | Self::MappedBySolver(text)
             | Self::Unread(text)
             | Self::Bare(text) => text.clone(),
+            Self::SameFile => {
+                "this is the crash model itself: both files have the same content".to_owned()
+            }
             Self::NoPart => "no part of the crash model fits".to_owned(),
             Self::OtherUnit(unit) => format!(
                 "one would if the stamped part is in {} and the crash part in {} (--stamped-length-factor {})",

@@ -1,7 +1,7 @@
 //! Stamped parts that lie in one place: which give way to others, and what each of the rest gives.
 
 use super::Claim;
-use crate::geometry::{Point3, Similarity, Vector3};
+use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::map::{MapRun, ThicknessSums};
@@ -15,7 +15,8 @@ const N_PLACES: usize = 400;
 const CHUNK: usize = 1 << 14;
 
 /// Of each stamped part, whether it gives way to one that fits clearly better and lies on what it lies on of the crash
-/// parts: else it would put its values over the right ones wherever it happens to be nearer.
+/// parts: else it would put its values over the right ones wherever it happens to be nearer. A match that is not good
+/// gives way to any good one there.
 pub(super) fn that_give_way(crash: &LoadedPart, members: &[(&LoadedPart, &Claim)]) -> Vec<bool> {
     let covers: Vec<Vec<bool>> = members
         .iter()
@@ -31,16 +32,17 @@ pub(super) fn that_give_way(crash: &LoadedPart, members: &[(&LoadedPart, &Claim)
     };
     let mut order: Vec<usize> = (0..members.len()).collect();
     order.sort_by(|a, b| {
-        let [a, b] = [a, b].map(|at| members[*at].1.fit.rmse);
-        a.total_cmp(&b)
+        let [a, b] = [a, b].map(|at| members[*at].1);
+        b.is_good
+            .cmp(&a.is_good)
+            .then(a.fit.rmse.total_cmp(&b.fit.rmse))
     });
     let mut gives_way = vec![false; members.len()];
     for (place, &at) in order.iter().enumerate() {
         gives_way[at] = order[..place].iter().any(|&better| {
-            let [own, other] = [at, better].map(|at| &members[at].1.fit);
-            !gives_way[better]
-                && !own.is_as_close_as(other)
-                && is_in_place(&covers[at], &covers[better])
+            let [own, other] = [at, better].map(|at| members[at].1);
+            let is_clear = other.is_good && !own.is_good || !own.fit.is_as_close_as(&other.fit);
+            !gives_way[better] && is_clear && is_in_place(&covers[at], &covers[better])
         });
     }
     gives_way
@@ -54,9 +56,7 @@ fn covers(crash: &LoadedPart, part: &LoadedPart, pose: &Similarity) -> Vec<bool>
     let step = mesh.n_triangles().div_ceil(N_PLACES).max(1);
     let asked = (0..mesh.n_triangles()).step_by(step);
     let lies_there = |triangle: usize| {
-        let corners = mesh.corners(triangle);
-        let sum: Vector3 = corners.iter().map(|corner| corner.coords).sum();
-        let centre = part_from_crash.apply(&Point3::from(sum / 3.0));
+        let centre = part_from_crash.apply(&mesh.triangle_centroid(triangle));
         let tree = part.surface.bvh();
         let hit = tree.closest(&centre, near / pose.scale, None, None);
         hit.is_some()

@@ -28,7 +28,7 @@ pub fn cards(
     parts: PerRole<&LoadedPart>,
     folder: Option<&Path>,
 ) -> Result<Cards, PipelineError> {
-    check(parts)?;
+    check(form, parts)?;
     let PerRole { crash, stamped } = parts;
     let coverage = &run.assessment.coverage;
     let units = PairUnits::of(parts.map(Some));
@@ -62,7 +62,7 @@ pub fn cards(
         file_name: folder
             .and_then(|folder| name_from(folder, stamped))
             .unwrap_or_else(|| included_name(&stamped.file_name()).to_owned()),
-        receiver: receiver(crash)?,
+        receiver: receiver(form, crash)?,
         search_radius: coverage.limit,
         mapped_percent: (100.0 * coverage.target_on_source.overlap - 1.0).max(0.0),
         transformation_id: shared_ids::free_transformation(parts),
@@ -98,9 +98,27 @@ pub fn notes(
         poor,
         two_sheets.filter(|_| is_stamped),
         shared.map(|shared| shared.told(parts.stamped)),
+        receiver_note(parts.crash).filter(|_| is_stamped),
         no_deck(parts.stamped),
     ];
     all.into_iter().flatten().collect()
+}
+
+/// Says that the part the cards name takes no forming results, or is more than what was matched.
+fn receiver_note(crash: &LoadedPart) -> Option<String> {
+    if !crash.has_shells() {
+        let note =
+            "the crash part has no shells, and the solver maps forming results onto shells only";
+        return Some(note.to_owned());
+    }
+    let set = match crash.settings.selection {
+        Selection::ShellSet(id) => format!("shell set {id}"),
+        Selection::NodeSet(id) => format!("node set {id}"),
+        _ => return None,
+    };
+    Some(format!(
+        "the cards name the whole part, of which only {set} was matched"
+    ))
 }
 
 /// Says that the solver cannot read the stamped file.
@@ -118,7 +136,7 @@ fn no_deck(stamped: &LoadedPart) -> Option<String> {
 
 /// What can be known before a match: that the cards can name the file and hold its unit, and that
 /// one part or set receives the results.
-pub fn check(parts: PerRole<&LoadedPart>) -> Result<(), PipelineError> {
+pub fn check(form: CardForm, parts: PerRole<&LoadedPart>) -> Result<(), PipelineError> {
     for part in [parts.stamped, parts.crash] {
         let factor = part.settings.length_factor;
         if factor != 1.0 {
@@ -127,7 +145,7 @@ pub fn check(parts: PerRole<&LoadedPart>) -> Result<(), PipelineError> {
         }
     }
     check_file_name(included_name(&parts.stamped.file_name()))?;
-    receiver(parts.crash).map(|_| ())
+    receiver(form, parts.crash).map(|_| ())
 }
 
 /// The name of a stamped file as a deck includes it: the solver reads the unpacked file.
@@ -170,7 +188,11 @@ fn way_from(here: &Path, there: &Path) -> Option<PathBuf> {
     has_common.then(|| up.chain(there).collect())
 }
 
-fn receiver(crash: &LoadedPart) -> Result<Receiver, PipelineError> {
+/// Who receives the forming results; `*INCLUDE_TRANSFORM` names nobody.
+fn receiver(form: CardForm, crash: &LoadedPart) -> Result<Receiver, PipelineError> {
+    if form == CardForm::IncludeTransform {
+        return Ok(Receiver::Part(0));
+    }
     if let Selection::PartSet(id) = crash.settings.selection {
         return Ok(Receiver::Set(id));
     }

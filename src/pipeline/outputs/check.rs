@@ -61,6 +61,16 @@ pub enum Refusal {
         /// Where it was to go.
         path: PathBuf,
     },
+    /// The name is that of a file in another format.
+    #[error(
+        "{name} is written as a keyword file; give it a name that ends in .k, not in that of another format: {path:?}"
+    )]
+    OtherFormat {
+        /// Name of the output.
+        name: String,
+        /// Where it was to go.
+        path: PathBuf,
+    },
     /// No deck could include a file of this name.
     #[error("{name}: no deck can include a file whose name {fault}: {path:?}")]
     DeckName {
@@ -126,6 +136,9 @@ fn name_fault(target: &Target) -> Option<Refusal> {
     let (name, path) = (target.name.clone(), target.path.clone());
     let is_deck = match target.content {
         Content::Text => return None,
+        Content::Deck if Format::of_name(&path).is_some_and(|of| of != Format::Keyword) => {
+            return Some(Refusal::OtherFormat { name, path });
+        }
         Content::Deck => true,
         Content::Mesh => match format_of(&path) {
             Ok(format) => format == Format::Keyword,

@@ -335,7 +335,7 @@ impl Output {
     }
 
     /// The same for a file that will stand in `folder`.
-    fn make_in(
+    pub fn make_in(
         self,
         input: &OutputInput,
         format: Option<Format>,
@@ -422,7 +422,7 @@ impl Output {
     /// What can be known before a match: that the cards can hold it.
     pub fn check(self, parts: PerRole<&LoadedPart>) -> Result<(), PipelineError> {
         match self {
-            Self::Cards(_) => cards::check(parts),
+            Self::Cards(form) => cards::check(form, parts),
             _ => Ok(()),
         }
     }

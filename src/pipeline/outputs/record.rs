@@ -62,8 +62,9 @@ pub fn command_line<'a>(run: &'a MatchRun, parts: PerRole<&'a LoadedPart>) -> Co
     }
 }
 
-/// Both files as a match has to be told. A crash part that the program chose among several that fit about as well is not
-/// named: the match finds it again and says so. One that begins at a given place has to be told which part lies there.
+/// Both files as a match has to be told. A crash part that the program chose among several that fit about as well is
+/// not named: the match finds it again and says so. One that begins at a given place has to be told which part lies
+/// there.
 pub fn match_sides<'a>(
     parts: PerRole<&'a LoadedPart>,
     settings: &MatchSettings,

@@ -315,9 +315,10 @@ impl Project {
         let Some(version) = schema.strip_prefix(SCHEMA) else {
             return Err(ProjectError::NoProject(at()));
         };
+        // A version that is no number is not one of this program's.
         if version
             .parse::<u32>()
-            .is_ok_and(|version| version > VERSION)
+            .map_or(true, |version| version > VERSION)
         {
             let version = version.to_owned();
             return Err(ProjectError::Newer {
@@ -456,6 +457,7 @@ impl Project {
             Some(file) => file
                 .file_name()
                 .map(|name| name.to_string_lossy().into_owned()),
+            None if entry.is_realistic_example => Some("the realistic example".to_owned()),
             None => Some("the example".to_owned()),
         };
         let names: Vec<String> = [stamped, crash]

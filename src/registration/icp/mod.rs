@@ -19,7 +19,7 @@ pub(super) use correspondence::{Correspondence, MatchRules, Sample, correspond};
 pub(super) use iterate::{Data, Frames, Run, StageInput, advance, orthonormal};
 pub use metric::Metric;
 pub use reject::RejectRules;
-pub use select::{Floor, Selection};
+pub use select::{Floor, PairSelection};
 pub(super) use select::{SelectRules, select};
 pub use stages::Stage;
 pub(super) use stages::{StageRules, edge_length, natural_floor, stage_rules};

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::correspondence::{MatchRules, PairWith};
 use super::metric::{Metric, StepRules};
 use super::reject::RejectRules;
-use super::select::{Floor, SelectRules, Selection};
+use super::select::{Floor, PairSelection, SelectRules};
 use crate::registration::closed_form::Motion;
 use crate::registration::settings::MatchSettings;
 use crate::registration::surface::Surface;
@@ -209,9 +209,9 @@ const LIKELY_STEP: f64 = 0.02;
 /// σ0 that the settings ask for between these surfaces.
 pub(crate) fn floor(settings: &MatchSettings, a: &Surface, b: &Surface) -> f64 {
     let chosen = match settings.selection {
-        Selection::Fractional { floor, .. } => floor,
-        Selection::TrimmedSearch => Floor::Auto,
-        Selection::All | Selection::Trimmed { .. } => Floor::None,
+        PairSelection::Fractional { floor, .. } => floor,
+        PairSelection::TrimmedSearch => Floor::Auto,
+        PairSelection::All | PairSelection::Trimmed { .. } => Floor::None,
     };
     match chosen {
         Floor::Auto => natural_floor(a, b) + settings.allowance,
@@ -288,7 +288,7 @@ pub(crate) fn stage_rules(
             max_translation: MAX_STEP * data.measures().diagonal.max(model.measures().diagonal),
             likely_motion: match settings.selection {
                 // What remains of the residuals is that of points without counterpart.
-                Selection::All | Selection::Trimmed { .. } => f64::INFINITY,
+                PairSelection::All | PairSelection::Trimmed { .. } => f64::INFINITY,
                 _ => LIKELY_STEP * data.measures().diagonal.min(model.measures().diagonal),
             },
         },
@@ -303,17 +303,17 @@ pub(crate) fn stage_rules(
 }
 
 /// The selection with a wide basin.
-fn widened(selection: Selection) -> Selection {
+fn widened(selection: PairSelection) -> PairSelection {
     match selection {
-        Selection::Fractional { lambda, floor } => Selection::Fractional {
+        PairSelection::Fractional { lambda, floor } => PairSelection::Fractional {
             lambda: lambda.max(WIDE_LAMBDA),
             floor,
         },
-        Selection::TrimmedSearch => Selection::Fractional {
+        PairSelection::TrimmedSearch => PairSelection::Fractional {
             lambda: WIDE_LAMBDA,
             floor: Floor::Auto,
         },
-        Selection::All | Selection::Trimmed { .. } => selection,
+        PairSelection::All | PairSelection::Trimmed { .. } => selection,
     }
 }
 

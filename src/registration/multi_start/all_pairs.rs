@@ -2,7 +2,7 @@
 
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
-use crate::registration::icp::{Run, Selection, StageInput, StageRules, advance};
+use crate::registration::icp::{PairSelection, Run, StageInput, StageRules, advance};
 use crate::registration::observer::MatchMonitor;
 
 /// A run that kept this share of the pairs left out nothing that matters.
@@ -12,7 +12,7 @@ const ALL_KEPT: f64 = 0.99;
 pub(super) fn left_pairs_out(run: &Run, rules: &StageRules) -> bool {
     let chooses = matches!(
         rules.selection.selection,
-        Selection::Fractional { .. } | Selection::TrimmedSearch
+        PairSelection::Fractional { .. } | PairSelection::TrimmedSearch
     );
     chooses && run.fraction < ALL_KEPT
 }
@@ -25,7 +25,7 @@ pub(super) fn with_all_pairs(
     monitor: &Monitor,
 ) -> Result<Similarity, Cancelled> {
     let mut rules = *input.rules;
-    rules.selection.selection = Selection::All;
+    rules.selection.selection = PairSelection::All;
     rules.step.likely_motion = f64::INFINITY;
     rules.least_reach = None;
     let mut all = Run::new(run.start_idx, run.model_from_data);

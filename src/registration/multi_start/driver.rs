@@ -20,8 +20,8 @@ use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::RegistrationError;
 use crate::registration::icp::{
-    Data, Floor, Frames, Run, Selection, Stage, StageInput, advance, edge_length, natural_floor,
-    stage_rules,
+    Data, Floor, Frames, PairSelection, Run, Stage, StageInput, advance, edge_length,
+    natural_floor, stage_rules,
 };
 use crate::registration::input::MatchInput;
 use crate::registration::observer::MatchMonitor;
@@ -586,8 +586,8 @@ fn alike(
 /// True if the deviation of the shapes is for the match to find out.
 fn expects_anything(settings: &MatchSettings) -> bool {
     match settings.selection {
-        Selection::Fractional { floor, .. } => floor == Floor::Auto,
-        Selection::TrimmedSearch => true,
-        Selection::All | Selection::Trimmed { .. } => false,
+        PairSelection::Fractional { floor, .. } => floor == Floor::Auto,
+        PairSelection::TrimmedSearch => true,
+        PairSelection::All | PairSelection::Trimmed { .. } => false,
     }
 }

@@ -6,7 +6,7 @@ use super::holes::Holes;
 use crate::geometry::{Point3, Similarity, Vector3};
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::icp::{
-    Correspondence, Floor, MatchRules, PairWith, RejectRules, Sample, SelectRules, Selection,
+    Correspondence, Floor, MatchRules, PairSelection, PairWith, RejectRules, Sample, SelectRules,
     correspond, edge_length, natural_floor, select,
 };
 use crate::registration::result::Side;
@@ -196,7 +196,7 @@ impl<'a> PoseScorer<'a> {
         };
         let floor = self.floor;
         let selection = SelectRules {
-            selection: Selection::Fractional {
+            selection: PairSelection::Fractional {
                 lambda: LAMBDA,
                 floor: Floor::Length(floor),
             },

@@ -1,5 +1,5 @@
-//! Poses of parts of which each has a piece that the other lacks. All of the smaller part together lies closest where most
-//! of it meets the other, which may be elsewhere; a piece of it that the other part has as well lies on that.
+//! Poses of parts of which each has a piece that the other lacks. All of the smaller part together lies closest where
+//! most of it meets the other, which may be elsewhere; a piece of it that the other part has as well lies on that.
 
 use super::WideSearch;
 use super::rounds::{self, Round};
@@ -76,8 +76,9 @@ const PIECE_ROUNDS: [Round; 6] = [
 ];
 
 impl WideSearch<'_> {
-    /// Poses `model_from_data` in which a piece of the data lies on the model, whatever the rest of it does: the best four
-    /// of each of four pieces, as exact as the grid. The same for any number of threads. O(patches · turns), bounded.
+    /// Poses `model_from_data` in which a piece of the data lies on the model, whatever the rest of it does: the best
+    /// four of each of four pieces, as exact as the grid. The same for any number of threads. O(patches · turns),
+    /// bounded.
     pub fn on_pieces(&self, monitor: &Monitor) -> Result<Vec<Similarity>, Cancelled> {
         let points: Vec<_> = self.cloud.points().collect();
         let away = |i: usize| points[i].norm_squared();

@@ -1,5 +1,6 @@
 //! Menus, search, unit, bell.
 
+use egui::containers::menu::MenuState;
 use egui::{
     Align, Button, Event, Id, Key, Layout, MenuBar, Modifiers, Popup, Response, RichText, Sense,
     Ui, pos2, vec2,
@@ -60,7 +61,8 @@ fn menus_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) -> Vec<R
     titles
 }
 
-/// F10 or Alt opens the first menu or closes the open one; Left and Right go from one open menu to the next.
+/// F10 or Alt opens the first menu or closes the open one; Left and Right go from one open menu to the next, unless
+/// they enter or leave a menu in it.
 fn turn_by_keys(ui: &Ui, titles: &[Response]) {
     let ctx = ui.ctx();
     for title in titles {
@@ -71,6 +73,7 @@ fn turn_by_keys(ui: &Ui, titles: &[Response]) {
     let is_other_open = open.is_none() && Popup::is_any_open(ctx);
     let is_pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
     let is_wanted = was_alt_alone(ui) || is_pressed(Key::F10);
+    let is_in_submenu = open.is_some_and(|at| !MenuState::is_deepest_open_sub_menu(ctx, ids[at]));
     let next = match open {
         _ if is_other_open => None,
         None => is_wanted.then_some(0),
@@ -78,6 +81,7 @@ fn turn_by_keys(ui: &Ui, titles: &[Response]) {
             Popup::close_id(ctx, ids[at]);
             None
         }
+        Some(_) if is_in_submenu => None,
         Some(at) if is_pressed(Key::ArrowRight) => Some((at + 1) % ids.len()),
         Some(at) if is_pressed(Key::ArrowLeft) => Some((at + ids.len() - 1) % ids.len()),
         Some(_) => None,

@@ -210,7 +210,7 @@ impl FieldStore {
         let kind = FieldKind::of(by)?;
         let display = &state.view.display;
         Some(match kind {
-            FieldKind::Deviation => display.coloring.deviation_scale(state.comparison()?),
+            FieldKind::Deviation => state.deviation_scale()?,
             FieldKind::Overlap => ColorScale::new(ColorMap::Classes, 0.0, 1.0),
             FieldKind::Map(MapPicture::Status) => ColorScale::statuses(),
             FieldKind::Map(MapPicture::File) => ColorScale::files(),
@@ -317,7 +317,7 @@ fn compared(kind: FieldKind, state: &AppState, role: Role, mesh: &ShownMesh) -> 
         FieldKind::Deviation if *coloring.on.get(role) => Some(FieldLook {
             values: Arc::clone(&drawn.signed),
             is_by_corner: false,
-            scale: coloring.deviation_scale(comparison),
+            scale: state.deviation_scale()?,
         }),
         FieldKind::Overlap => Some(FieldLook {
             values: Arc::clone(&drawn.overlap),

@@ -183,11 +183,12 @@ impl PointPicker<'_> {
         self.nearest(landmarks, pos, hit).map(|near| near.candidate)
     }
 
-    /// The round holes of a part that this window shows.
+    /// The round holes of what is shown of a part.
     fn holes(&self, role: Role) -> Option<impl Iterator<Item = Landmark>> {
         let place = self.0.picture.place_of(role)?;
-        let holes = &self.0.state.document.part(role)?.facts.landmarks.holes;
-        Some(holes.iter().map(move |hole| {
+        let landmarks = self.0.state.document.part(role)?.shown_landmarks();
+        let holes = landmarks.flat_map(|of_part| &of_part.holes);
+        Some(holes.map(move |hole| {
             let center = place.to_window(&hole.center);
             let radius = (hole.radius / self.size_at(&center)) as f32;
             Landmark {
@@ -202,8 +203,9 @@ impl PointPicker<'_> {
     /// The corners of its rim.
     fn corners(&self, role: Role) -> Option<impl Iterator<Item = Landmark>> {
         let place = self.0.picture.place_of(role)?;
-        let corners = &self.0.state.document.part(role)?.facts.landmarks.corners;
-        Some(corners.iter().map(move |corner| Landmark {
+        let landmarks = self.0.state.document.part(role)?.shown_landmarks();
+        let corners = landmarks.flat_map(|of_part| &of_part.corners);
+        Some(corners.map(move |corner| Landmark {
             point: place.to_window(corner),
             reach: REACH,
             depth: 0.0,

@@ -143,8 +143,11 @@ impl Tools {
     fn pointer_inputs(&self, ui: &Ui, frame: &FrameContext<'_>) -> Vec<PointerInput> {
         let rect = frame.rect();
         let is_over = frame.response.contains_pointer() || self.gizmo.is_dragging();
+        let pressed = place_of_press(ui, frame).filter(|_| !self.gizmo.is_dragging());
         let (now, released) = ui.input(|i| {
-            let place = i.pointer.latest_pos().filter(|_| is_over);
+            // While a button turns the camera, no handle is pointed at.
+            let is_turning = i.pointer.any_down() && !self.gizmo.is_dragging() && pressed.is_none();
+            let place = i.pointer.latest_pos().filter(|_| is_over && !is_turning);
             let now = PointerInput {
                 position: place.map(|at| pixel_of(rect, at)),
                 is_pressed: false,
@@ -164,7 +167,7 @@ impl Tools {
                 ..now
             })
         } else {
-            place_of_press(ui, frame).map(|at| PointerInput {
+            pressed.map(|at| PointerInput {
                 position: Some(at),
                 is_pressed: true,
                 ..now

@@ -133,8 +133,14 @@ fn fade(state: &AppState, view: &ViewFrame, parts: &mut [PartInstance]) {
     let is_shared = view.window == Role::Crash && state.view.is_moved_over;
     let by = state.color_by(view.window);
     let colored = &state.view.display.coloring.on;
+    let is_wiped = matches!(divider(state, view), Some(Divider::Wipe(_)));
+    // Of two sheets that lie in each other the colours of one would show through those of the other at random.
+    let is_quantity = by == ColorBy::Thickness || by.forming().is_some();
+    let shows_quantity = is_quantity && !state.is_mapping_shown() && !is_wiped;
+    let has_stamped = parts.iter().any(|part| part.role == Role::Stamped);
     for instance in parts.iter_mut() {
         let hides = match by {
+            _ if shows_quantity && has_stamped => is_shared && instance.role == Role::Crash,
             ColorBy::Deviation => is_shared && !*colored.get(instance.role),
             // Only the stamped part has one; the crash part would hide half of it.
             ColorBy::Uncertainty => is_shared && instance.role == Role::Crash,
@@ -147,7 +153,6 @@ fn fade(state: &AppState, view: &ViewFrame, parts: &mut [PartInstance]) {
     }
     // Colours that are seen through colours of another part are those of neither in the legend.
     let is_map = !matches!(by, ColorBy::Role | ColorBy::Part) && !state.is_mapping_shown();
-    let is_wiped = matches!(divider(state, view), Some(Divider::Wipe(_)));
     let is_looked_through = is_map && !is_wiped && crash_opacity(state) < 1.0;
     let is_behind = |part: &PartInstance| part.role == Role::Stamped && !part.is_ghost;
     if is_looked_through && parts.iter().any(is_behind) {
@@ -429,7 +434,9 @@ mod tests {
                 crash: true,
                 stamped: true,
             };
-            assert_eq!(ghosts(&state), [], "{by:?}");
+            // Both sheets have a thickness, and lie in each other.
+            let hidden = (by == ColorBy::Thickness).then_some(Role::Crash);
+            assert_eq!(ghosts(&state), Vec::from_iter(hidden), "{by:?}");
             state.view.display.is_see_through = true;
             assert_eq!(ghosts(&state), [Role::Crash], "{by:?}");
             // Left and right of a line nothing is seen through.

@@ -68,16 +68,27 @@ fn a_small_bead_is_found_on_fine_meshes() {
         let from_middle = ((x - 100.0) / 15.0).hypot((y - 50.0) / 9.0);
         3.0 * (1.0 - from_middle.powi(4)).max(0.0)
     };
-    let mesh = |n: usize, by: f64| sheet(n, [0.0, 0.0], 1.0, |x, y| waves(x, y) + by * bead(x, y));
-    let (plain, beaded) = (mesh(150, 0.0), mesh(140, 1.0));
-    for [source, target] in [[&beaded, &plain], [&plain, &beaded]] {
+    let mesh = |n: usize, by: f64, bend: f64| {
+        let height = |x: f64, y: f64| waves(x, y) + by * bead(x, y) + bend * (x / 500.0).powi(2);
+        sheet(n, [0.0, 0.0], 1.0, height)
+    };
+    let (plain, beaded) = (mesh(150, 0.0, 0.0), mesh(140, 1.0, 0.0));
+    // With a bend most nodes lie farther apart than the tolerance.
+    let bent = mesh(140, 1.0, 3.5);
+    let pairs = [
+        [&beaded, &plain],
+        [&plain, &beaded],
+        [&bent, &plain],
+        [&plain, &bent],
+    ];
+    for [source, target] in pairs {
         let shape = statement(source, target);
         let [ShapeReason::Local { by, .. }] = shape.reasons[..] else {
             panic!("{shape:?}");
         };
         assert!(by > 2.5 && by < 3.1, "{by}");
     }
-    let shape = statement(&mesh(140, 1.0), &mesh(150, 1.0));
+    let shape = statement(&mesh(140, 1.0, 0.0), &mesh(150, 1.0, 0.0));
     assert!(shape.reasons.is_empty(), "{shape:?}");
 }
 

@@ -24,7 +24,7 @@ pub enum Floor {
 /// Which of the pairs are kept in an iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Selection {
+pub enum PairSelection {
     /// All pairs (Besl and McKay 1992).
     All,
     /// The share `overlap` of the data area with the smallest distances (Chetverikov et al. 2005).
@@ -44,7 +44,7 @@ pub enum Selection {
     },
 }
 
-impl Default for Selection {
+impl Default for PairSelection {
     fn default() -> Self {
         Self::Fractional {
             lambda: Self::USUAL_LAMBDA,
@@ -53,7 +53,7 @@ impl Default for Selection {
     }
 }
 
-impl Selection {
+impl PairSelection {
     /// λ of Fractional ICP unless another is asked for.
     pub const USUAL_LAMBDA: f64 = 1.5;
     /// Fraction that Trimmed ICP keeps unless another is asked for.
@@ -63,7 +63,7 @@ impl Selection {
 /// Bounds and floor for one selection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SelectRules {
-    pub(crate) selection: Selection,
+    pub(crate) selection: PairSelection,
     /// σ0 in force, 0 for none.
     pub(crate) floor: f64,
     /// Largest share that geometry allows.
@@ -113,14 +113,14 @@ pub(crate) fn select(pairs: &[Correspondence], rules: &SelectRules) -> Option<Se
         return None;
     }
     let selected = match rules.selection {
-        Selection::All => trimmed::keep_share(pairs, ranking, 1.0),
-        Selection::Trimmed { overlap } => trimmed::keep_share(pairs, ranking, overlap),
-        Selection::TrimmedSearch => {
+        PairSelection::All => trimmed::keep_share(pairs, ranking, 1.0),
+        PairSelection::Trimmed { overlap } => trimmed::keep_share(pairs, ranking, overlap),
+        PairSelection::TrimmedSearch => {
             // ψ(ξ) = e·ξ^−(1+λ) with λ = 2 is the square of the fractional objective at 1.5.
             let bounds = [0.4, rules.max_fraction];
             fractional::best_share(pairs, ranking, 1.5, rules.floor, bounds)
         }
-        Selection::Fractional { lambda, .. } => {
+        PairSelection::Fractional { lambda, .. } => {
             let bounds = [0.05, rules.max_fraction];
             fractional::best_share(pairs, ranking, lambda, rules.floor, bounds)
         }

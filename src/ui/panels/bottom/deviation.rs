@@ -8,7 +8,7 @@ use egui_extras::{Column, TableBuilder};
 use crate::app::{
     Action, AppState, Command, ExportCommand, Freshness, GestureId, InspectCommand, ViewCommand,
 };
-use crate::assess::deviation::OverlapClass;
+use crate::assess::deviation::{DeviationStats, OverlapClass};
 use crate::geometry::Point3;
 use crate::pipeline::inspect::Comparison;
 use crate::report::distances::{COMPARED_P95, COMPARED_RMS};
@@ -146,12 +146,19 @@ fn freshness_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 /// Name of a row and its value in both directions.
 fn rows(state: &AppState, comparison: &Comparison) -> Vec<(String, [String; 2])> {
-    let coloring = &state.view.display.coloring;
-    let tolerance = coloring.deviation_scale(comparison).tolerance;
+    let tolerance = state.deviation_scale().map_or(0.0, |scale| scale.tolerance);
     let deviation = &comparison.deviation;
     let both = [&deviation.source_on_target, &deviation.target_on_source];
-    let row = |name: &str, of: &dyn Fn(&crate::assess::deviation::DeviationStats) -> String| {
+    let shares = |name: &str, of: &dyn Fn(&DeviationStats) -> String| {
         (name.to_owned(), both.map(|way| of(&way.stats)))
+    };
+    // Where nothing has a counterpart there is no distance, and 0 would be one.
+    let row = |name: &str, of: &dyn Fn(&DeviationStats) -> String| {
+        let of_way = |stats: &DeviationStats| match stats.is_empty() {
+            true => "–".to_owned(),
+            false => of(stats),
+        };
+        (name.to_owned(), both.map(|way| of_way(&way.stats)))
     };
     let lengths = state.lengths();
     let inside = format!("within ±{}", lengths.of(tolerance));
@@ -172,7 +179,7 @@ fn rows(state: &AppState, comparison: &Comparison) -> Vec<(String, [String; 2])>
             }
             OverlapClass::OffByMore | OverlapClass::OnlyHere => class.label().to_owned(),
         };
-        rows.push(row(&name, &|s| percent(s.class_shares[index])));
+        rows.push(shares(&name, &|s| percent(s.class_shares[index])));
     }
     rows
 }
@@ -238,7 +245,19 @@ fn spots_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison, commands: &m
     let spots = comparison.worst_spots();
     caption(ui, "Largest deviations (click to zoom)");
     if spots.is_empty() {
-        caption(ui, "none: the parts coincide or are far apart");
+        let both = [
+            &comparison.deviation.source_on_target,
+            &comparison.deviation.target_on_source,
+        ];
+        let are_apart = both.iter().all(|way| way.stats.is_empty());
+        caption(
+            ui,
+            if are_apart {
+                "none: nothing has a counterpart"
+            } else {
+                "none: the parts coincide"
+            },
+        );
         return;
     }
     ui.spacing_mut().item_spacing.y = 0.0;
@@ -377,8 +396,7 @@ fn csv(state: &AppState, comparison: &Comparison) -> String {
         &deviation.source_on_target.stats,
         &deviation.target_on_source.stats,
     ];
-    let coloring = &state.view.display.coloring;
-    let tolerance = coloring.deviation_scale(comparison).tolerance;
+    let tolerance = state.deviation_scale().map_or(0.0, |scale| scale.tolerance);
     let mut line = |name: &str, values: [f64; 2]| {
         // Writing into a text cannot fail.
         let _ = writeln!(text, "{name},{},{}", values[0], values[1]);

@@ -7,8 +7,8 @@ use crate::ui::viewport::meshes::ShownMesh;
 pub(super) fn thickness(part: &LoadedPart) -> Vec<f64> {
     let factor = part.settings.length_factor;
     let of_shell = |shell: usize| {
-        let corners = part.model.shell_thickness(shell as u32);
-        let mean = corners.map(|corners| corners.iter().sum::<f64>() / 4.0 * factor);
+        let mean = part.model.mean_shell_thickness(shell as u32);
+        let mean = mean.map(|mean| mean * factor);
         mean.filter(|value| *value > 0.0).unwrap_or(f64::NAN)
     };
     (0..part.model.shells.len()).map(of_shell).collect()

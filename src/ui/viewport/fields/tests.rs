@@ -64,8 +64,8 @@ fn differences_that_are_all_rounding_are_none() {
     assert_eq!(without_rounding(differ.clone(), sizes()), differ);
 }
 
-/// The colours at the nodes between elements are means, the figures are those of the elements themselves: the same as in
-/// record and report.
+/// The colours at the nodes between elements are means, the figures are those of the elements themselves: the same as
+/// in record and report.
 #[test]
 fn figures_of_a_quantity_are_those_of_its_elements() {
     let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];

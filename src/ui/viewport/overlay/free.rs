@@ -107,7 +107,8 @@ fn says(state: &AppState, free: FreeWindow) -> &'static str {
             let result = state.document.current_result();
             match result.and_then(|result| result.alternative) {
                 Some(_) => "the best pose of the match · same camera",
-                None => "the next best pose of the match · same camera",
+                None if state.has_alike_pose() => "the next best pose of the match · same camera",
+                None => "the next best pose, which fits clearly worse · same camera",
             }
         }
     }

@@ -74,7 +74,14 @@ fn bar(painter: &Painter, over: &Overlay<'_>) -> f32 {
     let above = MARGIN + 8.0 + bar_lift(over);
     let left = over.frame.rect().left_bottom() + vec2(bar_begin(over), -above);
     let right = left + vec2(bar.pixels as f32, 0.0);
-    let text = length_text(bar.length) + over.frame.state.lengths_of(over.role()).suffix();
+    // Both parts in one window lie in the space of the crash part.
+    let state = over.frame.state;
+    let space = if state.view.is_moved_over {
+        Role::Crash
+    } else {
+        over.role()
+    };
+    let text = length_text(bar.length) + state.lengths_of(space).suffix();
     let galley = painter.layout_no_wrap(text, FontId::proportional(11.5), over.frame.look.text);
     // A number wider than its bar needs the room, not the margin.
     let beyond = vec2((0.5 * (galley.size().x - (right.x - left.x))).max(0.0), 0.0);
@@ -219,8 +226,8 @@ fn element_value(state: &AppState, kind: FieldKind, hit: &Hit) -> Option<f64> {
         None => &state.document.part(hit.role)?.loaded,
     };
     let shell = part.model.shells.iter().position(|shell| shell.id == id)?;
-    let corners = part.model.shell_thickness(shell as u32)?;
-    let mean = corners.iter().sum::<f64>() / 4.0 * part.settings.length_factor;
+    let mean = part.model.mean_shell_thickness(shell as u32)?;
+    let mean = mean * part.settings.length_factor;
     Some(mean).filter(|mean| *mean > 0.0)
 }
 

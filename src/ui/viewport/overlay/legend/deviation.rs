@@ -57,7 +57,18 @@ pub(super) fn show(
         (Limit::Upper, beside),
         &mut coloring.limits,
     );
-    bars(ui, over, (scale, stats), room.bar, coloring);
+    let is_automatic = bars(ui, over, (scale, stats), room.bar, coloring);
+    if is_automatic {
+        commands.push(InspectCommand::FitRange.into());
+    } else if over.frame.state.is_range_held() && coloring.limits.is_none() {
+        let fit = egui::Button::new(RichText::new("Fit the range").size(11.5)).small();
+        if clickable(ui, |ui| ui.add(fit))
+            .on_hover_text("The range is that of the pose before the move")
+            .clicked()
+        {
+            commands.push(InspectCommand::FitRange.into());
+        }
+    }
     limits::field(
         ui,
         over,
@@ -216,14 +227,14 @@ fn side_words(ui: &mut Ui, over: &Overlay<'_>, words: &str, is_front: bool) {
     ui.label(RichText::new(text).size(11.0).color(over.frame.look.weak));
 }
 
-/// Histogram, bar, ticks, and the handles on them.
+/// Histogram, bar, ticks, and the handles on them; true if the limits are to follow the values again.
 fn bars(
     ui: &mut Ui,
     over: &Overlay<'_>,
     (scale, stats): (&ColorScale, &DeviationStats),
     height: f32,
     coloring: &mut Coloring,
-) {
+) -> bool {
     let (room, _) = ui.allocate_exact_size(vec2(WIDTH, height + 8.0), Sense::hover());
     let top = room.top() + 4.0;
     let bar_rect = Rect::from_min_size(
@@ -238,10 +249,12 @@ fn bars(
     for side in [1.0, -1.0] {
         drag_tolerance(ui, over, scale, (side, beside, bar_rect), coloring);
     }
-    if limits::is_automatic_asked(ui, over, bar_rect) {
+    let is_asked = limits::is_automatic_asked(ui, over, bar_rect);
+    if is_asked {
         coloring.limits = None;
         coloring.tolerance = None;
     }
+    is_asked
 }
 
 /// How much area has which value: bars in the colours of the values, growing to the left.
@@ -388,10 +401,13 @@ fn numbers(ui: &mut Ui, over: &Overlay<'_>, stats: &DeviationStats) {
     let mean = lengths.signed(stats.mean);
     // In metres they are longer than the legend is wide.
     let wrapped = |text: String| egui::Label::new(small(text)).wrap();
-    ui.add(wrapped(format!("mean {mean}, {least} to {most}")));
-    for (measure, value) in [(COMPARED_RMS, stats.rms), (COMPARED_P95, stats.p95)] {
-        let text = format!("{} {}", measure.name, lengths.of(value));
-        ui.add(wrapped(text)).on_hover_text(measure.help);
+    // Without a counterpart there is no distance, and 0 would be one.
+    if !stats.is_empty() {
+        ui.add(wrapped(format!("mean {mean}, {least} to {most}")));
+        for (measure, value) in [(COMPARED_RMS, stats.rms), (COMPARED_P95, stats.p95)] {
+            let text = format!("{} {}", measure.name, lengths.of(value));
+            ui.add(wrapped(text)).on_hover_text(measure.help);
+        }
     }
     let alone = stats.class_shares[2];
     if alone > 5e-4 {

@@ -3,7 +3,7 @@
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, PopupCloseBehavior, RichText, Ui};
 
-use crate::app::{Coloring, Command, Display, ViewCommand};
+use crate::app::{Coloring, Command, Display, InspectCommand, ViewCommand};
 use crate::colormap::ColorMap;
 use crate::role::Role;
 use crate::ui::pictures::clickable;
@@ -38,7 +38,7 @@ pub(super) fn maps(ui: &mut Ui, over: &Overlay<'_>, values: Values, commands: &m
         }
         choices(ui, &mut display.coloring, values);
         ui.separator();
-        automatic(ui, over, &mut display, values);
+        automatic(ui, over, &mut display, values, commands);
     };
     let (response, _) = clickable(ui, |ui| menu.ui(ui, choices_ui));
     let name = format!("Colour map ({})", over.role().word());
@@ -83,11 +83,20 @@ fn choices(ui: &mut Ui, coloring: &mut Coloring, values: Values) {
 }
 
 /// Limits that follow the values again.
-fn automatic(ui: &mut Ui, over: &Overlay<'_>, display: &mut Display, values: Values) {
+fn automatic(
+    ui: &mut Ui,
+    over: &Overlay<'_>,
+    display: &mut Display,
+    values: Values,
+    commands: &mut Vec<Command>,
+) {
     let coloring = &mut display.coloring;
     let by = over.frame.state.color_by(over.role());
     let is_set = match values {
-        Values::Deviation => coloring.limits.is_some() || coloring.tolerance.is_some(),
+        Values::Deviation => {
+            let is_set = coloring.limits.is_some() || coloring.tolerance.is_some();
+            is_set || over.frame.state.is_range_held()
+        }
         Values::Plain | Values::Signed => display.limits.contains_key(&by),
     };
     let automatic = Button::new("Automatic limits");
@@ -97,6 +106,7 @@ fn automatic(ui: &mut Ui, over: &Overlay<'_>, display: &mut Display, values: Val
     if values == Values::Deviation {
         coloring.limits = None;
         coloring.tolerance = None;
+        commands.push(InspectCommand::FitRange.into());
     } else {
         display.limits.remove(&by);
     }
