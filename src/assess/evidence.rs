@@ -54,17 +54,20 @@ impl PoseEvidence<'_> {
     }
 
     /// Where nodes meet the other part: those of the source, and those of the target, of which `is_asked` says so by
-    /// a rough place, normal and gap. None of a side of which more than `most` are asked.
+    /// a rough place, normal and gap; those that lie nearer than `least` are not. None of a side of which more than
+    /// `most` are.
     /// O(nodes near the other part + nodes asked · log triangles).
     pub(super) fn of_near(
         &self,
+        least: f64,
         is_asked: impl Fn(&Point3, &Vector3, f64) -> bool + Sync,
         most: usize,
     ) -> [Vec<Contact>; 2] {
         let search = self.search();
         [true, false].map(|of_source| {
             let near = &self.near[usize::from(!of_source)].nodes;
-            let asked = near.par_iter().filter(|near| {
+            let far = near.par_iter().filter(|near| near.distance >= least);
+            let asked = far.filter(|near| {
                 let (point, normal, gap) = self.roughly(near, of_source);
                 is_asked(&point, &normal, gap)
             });

@@ -90,6 +90,12 @@ impl Fit {
         off.fold(0.0, f64::max)
     }
 
+    /// The most that motion, bends and offset explain at any place.
+    pub(super) fn most_explained(&self) -> f64 {
+        let smooth = self.smooth.iter();
+        smooth.fold(0.0, |most: f64, smooth| most.max(smooth.abs())) + self.offset.abs()
+    }
+
     /// What nothing explains at a place that did not take part; `contacts` are those that did.
     pub(super) fn left_at(&self, place: &Contact, contacts: &Contacts) -> f64 {
         let row = explaining(contacts, &self.bends, &place.point, &place.normal, 1.0);

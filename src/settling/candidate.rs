@@ -277,6 +277,21 @@ impl Candidate {
             && (other.differs() || is_much_closer(self.meeting(), other.apart_in_all(), noise))
     }
 
+    /// The same where holes hold the pieces, however far a bend moves them: holes lie on each other by chance hardly
+    /// ever, while under the other pose something differs beyond doubt.
+    pub(super) fn fits_by_holes_as_a_piece_beside(&self, other: &Self, noise: f64) -> bool {
+        let n_differences = self.n_differences - usize::from(self.hardly_meets);
+        let nothing = (ON_EACH_OTHER * noise).max(UNREMARKABLE * self.limit);
+        self.only_overhangs
+            && (LEAST_SHARED..other.met).contains(&self.met)
+            && n_differences == 0
+            && other.n_clear > 0
+            && self.n_holes >= HOLES_THAT_HOLD
+            && self.n_alone < other.n_alone
+            && (self.remainder <= nothing || self.remainder < MUCH_CLOSER * other.remainder)
+            && self.apart_in_all() <= other.apart_in_all()
+    }
+
     /// Whether the parts meet as a whole, with their outlines together all round, while under another pose each has a
     /// piece that the other lacks and fewer of the outlines lie together. The ends of a profile lie together at both
     /// sides by chance hardly ever, while a bent part lies closer where it is slid along itself.

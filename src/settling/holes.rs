@@ -2,15 +2,20 @@
 
 use rayon::prelude::*;
 
-use super::candidate::{Candidate, judged};
+use super::candidate::{Candidate, FewPlaces, judged};
 use super::chosen_pose::ChosenPose;
 use super::context::PairContext;
 use super::refine_with_borders::{Least, Refinement};
 use crate::assess::contact::FEW_NODES;
+use crate::assess::evidence::EvidenceSearch;
 use crate::assess::tolerance::is_source_smaller;
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{MatchOutcome, Surface, WideSearch, is_piece};
+
+/// Steps to the surfaces at most, and the motion, as a share of what may remain, below which they end.
+const STEPS: usize = 12;
+const STILL: f64 = 0.002;
 
 /// The pose under which holes lie on like ones of the other part, where those of the pose of `outcome` do not: of a
 /// piece where the shapes differ and do not, or surely less, under that one, since a piece may slide along a strip
@@ -41,19 +46,51 @@ pub fn placed_by_holes(
     let refine = |pose: &Similarity| Ok(refinement.refined(pose, Least::Any)?.unwrap_or(*pose));
     let found_on_holes = poses(context)?.par_iter();
     let refined: Result<Vec<Similarity>, Cancelled> = found_on_holes.map(refine).collect();
-    let on_holes = judged(context, found, &refined?, |pose, shape| {
-        Candidate::at(pose, shape)
+    let few = FewPlaces::new(context, 1.0);
+    let mut on_holes = judged(context, found, &refined?, |pose, shape| {
+        few.candidate(pose, shape)
     })?;
+    let noise = context.distances(1.0).noise;
+    let fits_as_a_piece = |other: &Candidate, result: &Candidate| {
+        other.fits_by_holes_as_a_piece_beside(result, noise)
+    };
+    // A few holes and borders leave a bend open, which surfaces tell.
+    for at in 0..on_holes.candidates.len() {
+        let candidate = &on_holes.candidates[at];
+        if fits_as_a_piece(candidate, &on_holes.result) {
+            let closer = closer_to_surfaces(context, &candidate.pose)?;
+            let closer = few.candidate(closer, &context.shape(&closer));
+            on_holes.candidates.push(closer);
+        }
+    }
     let is_better = |other: &Candidate, result: &Candidate| {
         let differs_less = is_piece && result.differs() && !other.differs();
         (differs_less || other.beats(result)) && other.meets_as_much_as(result)
+            || fits_as_a_piece(other, result)
     };
     let by_differences = |a: &Candidate, b: &Candidate| {
         let by_holes = b.n_holes.cmp(&a.n_holes);
-        a.n_differences.cmp(&b.n_differences).then(by_holes)
+        let by_surfaces = a.apart().total_cmp(&b.apart());
+        let order = a.n_differences.cmp(&b.n_differences);
+        order.then(by_holes).then(by_surfaces)
     };
     let best = ChosenPose::best_of(on_holes, outcome, context.source, is_better, by_differences);
     Ok(best)
+}
+
+/// A pose moved to where the surfaces lie closest. O(steps · nodes · log triangles).
+fn closer_to_surfaces(
+    context: &PairContext<'_>,
+    pose: &Similarity,
+) -> Result<Similarity, Cancelled> {
+    let distances = context.distances(pose.scale);
+    let contacts = context.contacts(pose.scale, distances.reach, FEW_NODES);
+    let borders = context.borders(pose.scale, distances.border_reach);
+    let mut search = EvidenceSearch::new(contacts, &borders, &distances);
+    let still = STILL * distances.tolerance.remainder;
+    context.stepped(&mut search, pose, STEPS, |evidence| {
+        Some((evidence.closer_surfaces(), still))
+    })
 }
 
 /// Whether both parts have holes, and a pose like this one is looked for by them.

@@ -25,6 +25,9 @@ const LEAST_OF_END: f64 = 0.5;
 /// More nodes that lie far apart are no local difference: the places show them.
 const MOST_FAR: usize = 4000;
 
+/// Between and beside the places, motion, bends and offset may explain so many times as much as at any of them.
+const BEYOND_PLACES: f64 = 1.5;
+
 /// Distances are measured to about a hundredth of themselves: a second layer of the sheet, a thickness away, is no more
 /// than a thickness away.
 const MEASURED: f64 = 1.01;
@@ -155,7 +158,8 @@ impl LocalSearch<'_> {
             let left = self.fit.left_of((point, normal), gap, contacts);
             left.abs() > ROUGHLY * self.tolerance.remainder
         };
-        let met = self.evidence.of_near(is_asked, MOST_FAR);
+        let least = ROUGHLY * self.tolerance.remainder - BEYOND_PLACES * self.fit.most_explained();
+        let met = self.evidence.of_near(least, is_asked, MOST_FAR);
         let [of_source, of_target] = [0, 1].map(|side| {
             let per_node = self.evidence.near[side].per_node as f64;
             let apart = |contact| {

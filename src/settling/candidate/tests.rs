@@ -235,3 +235,58 @@ fn a_part_that_meets_as_a_whole_with_its_outlines_all_round_is_not_slid_for_a_be
     assert!(!compared(meets(0.99, 0.8)).fits_all_round_beside(&slid));
     assert!(!meets(0.99, 0.98).fits_all_round_beside(&slid));
 }
+
+/// Beams of which each lacks an end lie on each other all over where one is slid, with their holes beside each other.
+#[test]
+fn pieces_on_each_other_s_holes_are_more_likely_than_more_of_parts_that_differ() {
+    let holes = ShapeReason::Holes {
+        only_source: 2,
+        only_target: 2,
+        at: Point3::origin(),
+    };
+    let slid = Candidate {
+        met: 0.95,
+        n_alone: 4,
+        bend: 1.1,
+        remainder: 0.2,
+        ..candidate(&[holes])
+    };
+    let piece = || Candidate {
+        met: 0.7,
+        only_overhangs: true,
+        n_holes: 2,
+        bend: 0.8,
+        remainder: 0.08,
+        ..candidate(&[])
+    };
+    let fits = |other: Candidate| other.fits_by_holes_as_a_piece_beside(&slid, 0.02);
+    assert!(fits(piece()));
+    // With one hole it may be chance, as with little of the part, or where the surfaces lie no closer.
+    assert!(!fits(Candidate {
+        n_holes: 1,
+        ..piece()
+    }));
+    assert!(!fits(Candidate {
+        met: 0.4,
+        ..piece()
+    }));
+    assert!(!fits(Candidate {
+        remainder: 0.19,
+        ..piece()
+    }));
+    assert!(!fits(Candidate {
+        bend: 1.5,
+        ..piece()
+    }));
+    assert!(!fits(Candidate {
+        only_overhangs: false,
+        ..piece()
+    }));
+    // Where nothing differs beyond doubt, more of the part is more likely.
+    let regular = Candidate {
+        met: 0.95,
+        n_alone: 4,
+        ..candidate(&[])
+    };
+    assert!(!piece().fits_by_holes_as_a_piece_beside(&regular, 0.02));
+}
