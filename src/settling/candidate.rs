@@ -1,5 +1,7 @@
 //! A pose with the evidence of the shapes for and against it.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::context::PairContext;
@@ -266,13 +268,9 @@ impl Candidate {
     /// a piece that the other lacks, and more of the parts meets under another pose, under which their shapes differ or
     /// their surfaces lie much farther apart.
     pub(super) fn fits_as_a_piece_beside(&self, other: &Self, noise: f64) -> bool {
-        let n_differences = self.n_differences - usize::from(self.hardly_meets);
-        let nothing = (ON_EACH_OTHER * noise).max(UNREMARKABLE * self.limit);
-        self.only_overhangs
-            && (LEAST_PIECE..other.met).contains(&self.met)
-            && n_differences == 0
+        self.is_piece_without_difference(LEAST_PIECE..other.met)
             && self.n_alone <= other.n_alone
-            && self.remainder <= nothing
+            && self.has_no_remainder(noise)
             && self.apart_in_all() < MUCH_CLOSER * other.apart_in_all()
             && (other.differs() || is_much_closer(self.meeting(), other.apart_in_all(), noise))
     }
@@ -280,16 +278,25 @@ impl Candidate {
     /// The same where holes hold the pieces, however far a bend moves them: holes lie on each other by chance hardly
     /// ever, while under the other pose something differs beyond doubt.
     pub(super) fn fits_by_holes_as_a_piece_beside(&self, other: &Self, noise: f64) -> bool {
-        let n_differences = self.n_differences - usize::from(self.hardly_meets);
-        let nothing = (ON_EACH_OTHER * noise).max(UNREMARKABLE * self.limit);
-        self.only_overhangs
-            && (LEAST_SHARED..other.met).contains(&self.met)
-            && n_differences == 0
+        let remains_much_less = self.remainder < MUCH_CLOSER * other.remainder;
+        self.is_piece_without_difference(LEAST_SHARED..other.met)
             && other.n_clear > 0
             && self.n_holes >= HOLES_THAT_HOLD
             && self.n_alone < other.n_alone
-            && (self.remainder <= nothing || self.remainder < MUCH_CLOSER * other.remainder)
+            && (self.has_no_remainder(noise) || remains_much_less)
             && self.apart_in_all() <= other.apart_in_all()
+    }
+
+    /// Whether each part has a piece here that the other lacks, so much of the smaller one meets the other, and nothing
+    /// differs but what a bend explains.
+    fn is_piece_without_difference(&self, met: Range<f64>) -> bool {
+        let n_differences = self.n_differences - usize::from(self.hardly_meets);
+        self.only_overhangs && met.contains(&self.met) && n_differences == 0
+    }
+
+    /// Whether nothing remains besides bends but what facets leave, or what is negligible.
+    fn has_no_remainder(&self, noise: f64) -> bool {
+        self.remainder <= (ON_EACH_OTHER * noise).max(UNREMARKABLE * self.limit)
     }
 
     /// Whether the parts meet as a whole, with their outlines together all round, while under another pose each has a

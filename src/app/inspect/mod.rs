@@ -136,19 +136,23 @@ impl AppState {
     /// The colours of the deviation, if it was measured.
     pub fn deviation_scale(&self) -> Option<ColorScale> {
         let comparison = self.comparison()?;
-        let held = self.inspect.limit.as_ref();
-        let held = held.and_then(|limit| limit.current(&self.document).copied());
-        let limit = held.unwrap_or_else(|| own_limit(comparison));
+        let limit = self.held_limit().unwrap_or_else(|| own_limit(comparison));
         let coloring = &self.view.display.coloring;
         Some(coloring.deviation_scale(comparison.deviation.is_signed, limit))
     }
 
     /// True if the automatic range of the map is that of the pose before the stamped part was moved.
     pub fn is_range_held(&self) -> bool {
-        let held = self.inspect.limit.as_ref();
-        let held = held.and_then(|limit| limit.current(&self.document).copied());
-        let own = self.comparison().map(own_limit);
-        held.is_some() && held != own
+        let held = self.held_limit();
+        held.is_some() && held != self.comparison().map(own_limit)
+    }
+
+    fn held_limit(&self) -> Option<f64> {
+        self.inspect
+            .limit
+            .as_ref()?
+            .current(&self.document)
+            .copied()
     }
 
     /// One direction of the comparison: from the nodes of `role` to the other part.
