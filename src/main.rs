@@ -8,6 +8,8 @@ use shapematch::cli::{self, Cli};
 use shapematch::text::without_error_number;
 
 fn main() -> ExitCode {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    give_memory_back();
     let first = std::env::args_os().nth(1);
     cli::refuse_unknown(first.as_deref());
     let cli = Cli::parse();
@@ -29,6 +31,25 @@ fn main() -> ExitCode {
         log::error!("{}", without_error_number(&format!("{error:#}")));
         cli::exit_status(&error)
     })
+}
+
+/// Has glibc give freed memory back to the system. By itself it raises both limits to what was freed last, and then
+/// keeps up to 64 MB for every thread: 0.14 of 0.91 GB with a pair of 3.6M triangles.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+#[expect(
+    unsafe_code,
+    reason = "the only way to the allocator's limits, and safe while no other thread runs"
+)]
+fn give_memory_back() {
+    // Blocks from here on are mapped each by itself, and unmapped when they are freed.
+    const MAPPED_FROM: libc::c_int = 4 << 20;
+    // What is kept at the end of a heap.
+    const KEPT: libc::c_int = 8 << 20;
+    // SAFETY: `mallopt` takes numbers and no pointers; what it refuses stays as it was.
+    unsafe {
+        libc::mallopt(libc::M_MMAP_THRESHOLD, MAPPED_FROM);
+        libc::mallopt(libc::M_TOP_PAD, KEPT);
+    }
 }
 
 /// The threads of the work; those of a window stand behind it.

@@ -51,7 +51,7 @@ pub(crate) fn places(
 }
 
 impl Place {
-    pub(super) fn moved(self, pose: &Similarity) -> Self {
+    pub(crate) fn moved(self, pose: &Similarity) -> Self {
         // A mirror turns the sense in which a border is walked along.
         let sense = if pose.is_mirrored() { -1.0 } else { 1.0 };
         Self {

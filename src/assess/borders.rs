@@ -143,6 +143,11 @@ impl<'a> BorderComparison<'a> {
         }
     }
 
+    /// Source and target.
+    pub(super) fn surfaces(&self) -> [&'a Surface; 2] {
+        self.surfaces
+    }
+
     /// Compares the borders that lie near each other under a pose. O(border edges + near triangles).
     pub(crate) fn at(&self, pose: &Similarity) -> Borders {
         let still = Similarity::identity();
@@ -215,11 +220,13 @@ impl BorderPlaces {
         let tree = |places: &[Place]| {
             PointTree::build(places.iter().map(|place| place.point).collect::<Vec<_>>())
         };
+        let (own_tree, other_tree) =
+            rayon::join(|| tree(&along(own, own_spacing)), || tree(&dense));
         Some(Self {
             own: along(own, step),
             step,
-            own_tree: tree(&along(own, own_spacing)),
-            other_tree: tree(&dense),
+            own_tree,
+            other_tree,
             other: dense,
             spacing,
         })

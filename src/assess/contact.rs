@@ -402,8 +402,10 @@ impl Contacts {
         let extents = [extent(0), extent(1), extent(2)];
         let longest = (0..3).max_by(|&a, &b| extents[a].total_cmp(&extents[b]));
         let axis = longest.unwrap_or(0);
-        places.sort_unstable_by(|&a, &b| at(a)[axis].total_cmp(&at(b)[axis]).then(a.cmp(&b)));
-        let (low, high) = places.split_at_mut(places.len() / 2);
+        let middle = places.len() / 2;
+        let in_order = |a: &usize, b: &usize| at(*a)[axis].total_cmp(&at(*b)[axis]).then(a.cmp(b));
+        places.select_nth_unstable_by(middle, in_order);
+        let (low, high) = places.split_at_mut(middle);
         self.halve(low, levels - 1, next, patch);
         self.halve(high, levels - 1, next, patch);
     }

@@ -1,6 +1,7 @@
 //! Motions that slide the surfaces on each other.
 
 use nalgebra::{Const, SMatrix, SymmetricEigen};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::contact::{ContactSearch, FEW_NODES};
@@ -75,6 +76,15 @@ pub struct FreeMotion {
 }
 
 impl FreeMotion {
+    /// The same in another frame.
+    pub(crate) fn moved(&self, other_from_target: &Similarity) -> Self {
+        Self {
+            kind: self.kind,
+            direction: other_from_target.rotate(&self.direction),
+            point: other_from_target.apply(&self.point),
+        }
+    }
+
     /// Unit direction in which the motion takes a point of the target's frame; `None` where it may take it in several,
     /// or leaves it where it is.
     pub(super) fn way_at(&self, point: &Point3) -> Option<Vector3> {
@@ -308,8 +318,9 @@ fn held_points(
 ) -> Vec<(Point3, Vector3, f64)> {
     let n = source.mesh().n_vertices();
     let stride = n.div_ceil(MAX_NODES).max(1);
-    (0..n)
-        .step_by(stride)
+    (0..n.div_ceil(stride))
+        .into_par_iter()
+        .map(|place| place * stride)
         .filter_map(|vertex| {
             let moved = target_from_source.apply(&source.mesh().positions()[vertex]);
             let hit = target.bvh().closest(&moved, limit, None, None)?;

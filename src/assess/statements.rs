@@ -55,7 +55,8 @@ pub(super) fn statements(
     asked: Asked<'_>,
     settings: &AssessSettings,
 ) -> Statements {
-    let mut compared = Compared::under(pair, pose, settings, Outlines::Compared);
+    let borders = borders_of(pair, pose.scale, settings);
+    let mut compared = Compared::under(&borders, pose, settings, Outlines::Compared);
     if let Some(met) = &mut compared.met {
         met.evidence.near = asked.near;
     }
@@ -80,12 +81,23 @@ pub(super) fn statements(
 
 /// The statement about the shape alone, which costs less. O(border edges + nodes · log triangles).
 pub(crate) fn shape_statement(
-    pair: [&Surface; 2],
+    borders: &BorderComparison<'_>,
     pose: &Similarity,
     settings: &AssessSettings,
     outlines: Outlines,
 ) -> ShapeStatement {
-    Compared::under(pair, pose, settings, outlines).shape(settings)
+    Compared::under(borders, pose, settings, outlines).shape(settings)
+}
+
+/// The borders of two parts as the statements compare them, under poses of this scale.
+fn borders_of<'a>(
+    pair: [&'a Surface; 2],
+    scale: f64,
+    settings: &AssessSettings,
+) -> BorderComparison<'a> {
+    let [source, target] = pair;
+    let reach = Distances::of(source, target, scale, settings).border_reach;
+    BorderComparison::new(pair, scale, reach)
 }
 
 /// The statement about the shape at the pose of the opposite hand, if its score speaks for it.
@@ -97,13 +109,16 @@ pub(super) fn mirrored_statement(
     let check = &outcome.mirror_check;
     let pose = check.target_from_source.as_ref()?;
     let speaks_for_it = check.score_ratio? < NEAR_MIRROR;
-    speaks_for_it.then(|| shape_statement(pair, pose, settings, Outlines::Compared))
+    speaks_for_it.then(|| {
+        let borders = borders_of(pair, pose.scale, settings);
+        shape_statement(&borders, pose, settings, Outlines::Compared)
+    })
 }
 
 /// Both parts under a pose, and what their shapes are compared by.
 struct Compared<'a> {
     tolerance: ShapeTolerance,
-    borders: BorderComparison<'a>,
+    borders: &'a BorderComparison<'a>,
     /// `None` where their surfaces do not meet.
     met: Option<Met<'a>>,
 }
@@ -118,19 +133,19 @@ struct Met<'a> {
 
 impl<'a> Compared<'a> {
     fn under(
-        pair: [&'a Surface; 2],
+        borders: &'a BorderComparison<'a>,
         pose: &Similarity,
         settings: &AssessSettings,
         outlines: Outlines,
     ) -> Self {
+        let pair = borders.surfaces();
         let [source, target] = pair;
         let distances = Distances::of(source, target, pose.scale, settings);
         let millimetre = settings.length_of_millimetre();
         let diagonal = target.measures().diagonal;
         let tolerance = distances.tolerance.for_bends(diagonal, millimetre);
         let contacts = ContactSearch::new(pair, pose.scale, distances.reach, MAX_NODES);
-        let borders = BorderComparison::new(pair, pose.scale, distances.border_reach);
-        let mut search = EvidenceSearch::new(contacts, &borders, &distances);
+        let mut search = EvidenceSearch::new(contacts, borders, &distances);
         let met = search.at(pose);
         Self {
             met: met.map(|evidence| Met::of(evidence, &tolerance, outlines)),
@@ -276,7 +291,8 @@ mod tests {
         for (out, is_held_by_trims) in [([0.0; 2], false), ([-1.5, 1.5], true)] {
             let pair = [&plate(out), &whole];
             let pose = Similarity::identity();
-            let compared = Compared::under(pair, &pose, &settings, Outlines::Compared);
+            let borders = borders_of(pair, pose.scale, &settings);
+            let compared = Compared::under(&borders, &pose, &settings, Outlines::Compared);
             let met = compared.met.unwrap();
             assert_eq!(met.is_held_by_trims(&compared.tolerance), is_held_by_trims);
             let largest = |other_trims| {

@@ -1,5 +1,7 @@
 //! How far the pose may be off, in lengths: what it would do if a part of the evidence were missing.
 
+mod spread;
+
 use nalgebra::{SVector, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
@@ -10,10 +12,11 @@ use super::fit::{Fit, LEAST_OWN};
 use super::jackknife::{self, Patches};
 use super::least_squares::{Imitated, NormalEquations, robust_weights};
 use super::shape::FACETING;
-use super::small_motion::{Six, Unknown, motion_of, turn_and_shift};
+use super::small_motion::{Six, Unknown, motion_of};
 use crate::geometry::serial::{any_float, xyz};
 use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
 use crate::registration::Surface;
+use spread::{SmallMotion, Spread};
 
 /// The gaps are an offset of the sheets if, solved for, it leaves less than this share of their squares.
 const OFFSET_LEAVES: f64 = 0.25;
@@ -36,31 +39,6 @@ const BENDS_OFF: f64 = 2.5;
 
 /// A direction is one of the part's own within about 37°: cosine of the angle between them.
 const ALIKE: f64 = 0.8;
-
-/// A turn about the centre and a shift, in the target's frame.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-struct SmallMotion {
-    #[serde(with = "xyz")]
-    turn: Vector3,
-    #[serde(with = "xyz")]
-    shift: Vector3,
-}
-
-impl SmallMotion {
-    /// Of a motion given as in [`Contacts::row`].
-    fn of(six: &Six, contacts: &Contacts) -> Self {
-        let [turn, shift] = turn_and_shift(six);
-        Self {
-            turn: turn / contacts.radius,
-            shift,
-        }
-    }
-
-    /// How it moves a place so far from the centre.
-    fn at(&self, arm: &Vector3) -> Vector3 {
-        self.shift + self.turn.cross(arm)
-    }
-}
 
 /// Which way of the part its largest uncertainty points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -161,8 +139,9 @@ impl PoseUncertainty {
         let nodes = source.mesh().positions().iter().zip(source.vertex_areas());
         let used = nodes.filter(|(_, area)| **area > 0.0);
         let places = used.map(|(p, _)| pose.apply(p));
+        let spread = Spread::of(&found.motions);
         let (largest, place) = places
-            .map(|p| (found.at(&p), p))
+            .map(|p| (spread.at(&(p - found.center)), p))
             .max_by(|a, b| a.0.total_cmp(&b.0))?;
         // Beyond the size of the part a linear step is no estimate any more.
         let most = source.measures().diagonal * pose.scale;
@@ -181,13 +160,14 @@ impl PoseUncertainty {
 
     /// The uncertainty at a place of the target's frame, in target length units.
     pub fn at(&self, place: &Point3) -> f64 {
-        sum_of(&self.motions, &(place - self.center))
+        Spread::of(&self.motions).at(&(place - self.center))
     }
 
     /// The uncertainty of every point of a part under the pose that moves it into the target's frame.
     /// O(points).
     pub fn field(&self, points: &[Point3], target_from_points: &Similarity) -> Vec<f64> {
-        let at = |p: &Point3| self.at(&target_from_points.apply(p));
+        let spread = Spread::of(&self.motions);
+        let at = |p: &Point3| spread.at(&(target_from_points.apply(p) - self.center));
         points.iter().map(at).collect()
     }
 
@@ -238,15 +218,10 @@ fn largest_of(motions: &[Six], contacts: &Contacts) -> f64 {
         .iter()
         .map(|six| SmallMotion::of(six, contacts))
         .collect();
+    let spread = Spread::of(&motions);
     let places = contacts.list.iter();
-    let of_places = places.map(|c| sum_of(&motions, &(c.point - contacts.center)));
+    let of_places = places.map(|c| spread.at(&(c.point - contacts.center)));
     of_places.fold(0.0, f64::max)
-}
-
-/// How far motions whose squares sum up move a place so far from the centre.
-fn sum_of(motions: &[SmallMotion], arm: &Vector3) -> f64 {
-    let off = |m: &SmallMotion| m.at(arm).norm_squared();
-    motions.iter().map(off).sum::<f64>().sqrt()
 }
 
 /// How the outlines would move the pose if those of one side of the part after the other had been trimmed elsewhere by

@@ -3,6 +3,7 @@
 mod fit;
 
 use std::collections::BTreeMap;
+use std::iter;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -14,7 +15,7 @@ use super::likeness::{AS_ALIKE, Moments, Signature, joined_signatures, moments_o
 use super::load::{LoadedPart, prepare};
 use super::match_parts::{MatchRecipe, MatchRun, match_parts};
 use super::{PipelineError, millis_since};
-use crate::assess::Verdict;
+use crate::assess::{Ambiguity, Verdict};
 use crate::formats::Selection;
 use crate::geometry::Similarity;
 use crate::geometry::chunks::for_chunks;
@@ -319,8 +320,8 @@ impl Task<'_> {
 }
 
 /// The pose in which the mirror image of the stamped part lies on most of what the stamped part itself, in its
-/// `own` pose, leaves of the crash parts, as where one half of a symmetric sheet was formed; `None` where it does
-/// not.
+/// `own` pose, leaves of the crash parts, as where one half of a symmetric sheet was formed; of several in which it
+/// fits about as well the first. `None` where it lies there in none.
 pub fn mirrored_twin(
     parts: PerRole<&LoadedPart>,
     own: &Similarity,
@@ -337,16 +338,35 @@ pub fn mirrored_twin(
     let Ok(run) = unless_cancelled(run)? else {
         return Ok(None);
     };
+    if run.assessment.verdict == Verdict::Poor {
+        return Ok(None);
+    }
+    let alternatives = Ambiguity::near(&run.outcome.alternatives).iter();
+    let alternatives = alternatives.map(|other| other.target_from_source);
+    for pose in iter::once(run.crash_from_stamped).chain(alternatives) {
+        if lies_on_the_rest(parts, [own, &pose], monitor)? {
+            return Ok(Some(pose));
+        }
+    }
+    Ok(None)
+}
+
+/// Whether the stamped part under its other pose lies on most of what it leaves of the crash parts under its own.
+fn lies_on_the_rest(
+    parts: PerRole<&LoadedPart>,
+    poses: [&Similarity; 2],
+    monitor: &Monitor,
+) -> Result<bool, Cancelled> {
     let (stamped, crash) = (&parts.stamped.surface, &parts.crash.surface);
     let mesh = crash.mesh();
     let edges = [stamped, crash].map(|surface| surface.measures().mean_edge_length);
     let near = edges[0].max(edges[1]);
-    let poses = [*own, run.crash_from_stamped].map(|pose| (pose.inverse(), pose.scale));
+    let poses = poses.map(|pose| (pose.inverse(), pose.scale));
     let (mut left, mut there) = (0.0, 0.0);
     for_chunks(mesh.n_triangles(), monitor, |range| {
         for triangle in range {
             let centre = mesh.triangle_centroid(triangle);
-            let [own, mirrored] = poses.each_ref().map(|(inverse, scale)| {
+            let [own, other] = poses.each_ref().map(|(inverse, scale)| {
                 let hit = stamped
                     .bvh()
                     .closest(&inverse.apply(&centre), near / scale, None, None);
@@ -354,11 +374,10 @@ pub fn mirrored_twin(
             });
             let area = mesh.triangle_area(triangle);
             left += if own { 0.0 } else { area };
-            there += if mirrored && !own { area } else { 0.0 };
+            there += if other && !own { area } else { 0.0 };
         }
     })?;
-    let is_there = run.assessment.verdict != Verdict::Poor && there > LIES_THERE * left;
-    Ok(is_there.then_some(run.crash_from_stamped))
+    Ok(there > LIES_THERE * left)
 }
 
 /// What parts are compared by.

@@ -1,6 +1,7 @@
 //! The nearest of many surface points for every cell of a regular grid: an approximate closest
 //! point in constant time, however far away the query is.
 
+use glam::{Vec3A, Vec4};
 use rayon::prelude::*;
 
 use crate::geometry::{Aabb, Point3, Vector3};
@@ -14,9 +15,9 @@ const EMPTY: u32 = u32::MAX;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GridFeature {
     /// Where it lies.
-    pub point: [f32; 3],
+    pub point: Vec3A,
     /// The unit normal there.
-    pub normal: [f32; 3],
+    pub normal: Vec3A,
 }
 
 /// How fine a grid is and how far it reaches.
@@ -53,6 +54,7 @@ pub struct FeatureGrid {
     per_unit: f32,
     /// Cells along x, y and z.
     shape: [usize; 3],
+    /// Layer by layer, in rows along x: queries along a sheet find neighbours in one line of the cache.
     cells: Vec<u32>,
     features: Vec<GridFeature>,
 }
@@ -74,8 +76,8 @@ impl FeatureGrid {
         let shape = [half.x, half.y, half.z]
             .map(|half| ((2.0 * half / cell).ceil() as usize).clamp(1, n_longest));
         let features = samples.iter().map(|(point, normal)| GridFeature {
-            point: narrow((point - origin) * scale),
-            normal: narrow(*normal),
+            point: narrow((point - origin) * scale).into(),
+            normal: narrow(*normal).into(),
         });
         let mut grid = Self {
             origin,
@@ -83,15 +85,10 @@ impl FeatureGrid {
             low: std::array::from_fn(|k| -0.5 * (shape[k] as f64 * cell) as f32),
             per_unit: (1.0 / cell) as f32,
             shape,
-            cells: vec![EMPTY; shape.iter().product()],
+            cells: Vec::new(),
             features: features.collect(),
         };
-        grid.enter_samples();
-        // Rows along x know their own samples, layers then the nearest of their rows, and the grid
-        // the nearest of its layers.
-        for axis in 0..3 {
-            grid.spread_along(axis);
-        }
+        grid.cells = grid.nearest_of_cells();
         Some(grid)
     }
 
@@ -144,6 +141,33 @@ impl FeatureGrid {
         &self.features[self.nearest_index(query) as usize]
     }
 
+    /// [`FeatureGrid::nearest`] of four queries, given coordinate by coordinate. One at the border of two cells may
+    /// ask either.
+    #[inline(always)]
+    pub fn nearest_four(&self, query: [Vec4; 3]) -> [&GridFeature; 4] {
+        // Numbers up to 2²³ added to it are rounded, and stand in its low bits.
+        const ROUNDING: f32 = 8_388_608.0;
+        let number = |n: usize| Vec4::splat(n as f32);
+        let along = |k: usize| {
+            let steps = (query[k] - Vec4::splat(self.low[k])) * self.per_unit - 0.5;
+            // What is not a number becomes zero.
+            let steps = steps.max(Vec4::ZERO).min(number(self.shape[k] - 1));
+            (steps + ROUNDING) - ROUNDING
+        };
+        let cell = along(2) * number(self.shape[1]) + along(1);
+        let cell = cell * number(self.shape[0]) + along(0) + ROUNDING;
+        let of_cell = |cell: f32| {
+            let cell = cell.to_bits() ^ ROUNDING.to_bits();
+            &self.features[self.cells[cell as usize] as usize]
+        };
+        [
+            of_cell(cell.x),
+            of_cell(cell.y),
+            of_cell(cell.z),
+            of_cell(cell.w),
+        ]
+    }
+
     #[inline]
     fn cell_at(&self, query: [f32; 3]) -> usize {
         // Float to integer saturates, and a number that is none becomes zero.
@@ -158,65 +182,75 @@ impl FeatureGrid {
         self.low[axis] + (cell as f32 + 0.5) / self.per_unit
     }
 
-    /// Enters every sample in its own cell; of several the one nearest to the cell's centre.
-    fn enter_samples(&mut self) {
-        let [nx, ny, _] = self.shape;
-        for i in 0..self.features.len() as u32 {
-            let point = self.features[i as usize].point;
+    /// The sample nearest to each cell. Rows along x know their own samples, layers then the nearest of their
+    /// rows, and the grid the nearest of its layers.
+    fn nearest_of_cells(&self) -> Vec<u32> {
+        let [nx, ny, nz] = self.shape;
+        let mut layers = self.samples_of_cells();
+        layers
+            .par_chunks_mut(nx)
+            .with_min_len(64)
+            .enumerate()
+            .for_each_init(Envelope::default, |envelope, (row, names)| {
+                envelope.take(self, 0, [row % ny, row / ny], names.iter().copied());
+                envelope.lowest_at(self.centers_along(0), names.iter_mut());
+            });
+        layers.par_chunks_mut(nx * ny).enumerate().for_each_init(
+            Envelope::default,
+            |envelope, (z, layer)| {
+                for x in 0..nx {
+                    let names = layer[x..].iter().step_by(nx).copied();
+                    envelope.take(self, 1, [x, z], names);
+                    let names = layer[x..].iter_mut().step_by(nx);
+                    envelope.lowest_at(self.centers_along(1), names);
+                }
+            },
+        );
+        // What lies above each row of the lowest layer.
+        let walls: Vec<Vec<u32>> = (0..ny)
+            .into_par_iter()
+            .map_init(Envelope::default, |envelope, y| {
+                let mut wall = vec![EMPTY; nx * nz];
+                for x in 0..nx {
+                    let names = layers[y * nx + x..].iter().step_by(nx * ny).copied();
+                    envelope.take(self, 2, [x, y], names);
+                    let names = wall[x..].iter_mut().step_by(nx);
+                    envelope.lowest_at(self.centers_along(2), names);
+                }
+                wall
+            })
+            .collect();
+        layers
+            .par_chunks_mut(nx * ny)
+            .enumerate()
+            .for_each(|(z, layer)| {
+                for (row, wall) in layer.chunks_mut(nx).zip(&walls) {
+                    row.copy_from_slice(&wall[z * nx..][..nx]);
+                }
+            });
+        layers
+    }
+
+    /// Every sample in its own cell, of several the one nearest to the cell's centre.
+    fn samples_of_cells(&self) -> Vec<u32> {
+        let [nx, ny, nz] = self.shape;
+        let mut cells = vec![EMPTY; nx * ny * nz];
+        for (i, &GridFeature { point, .. }) in self.features.iter().enumerate() {
+            let point = point.into();
             let cell = self.cell_at(point);
             let at = [cell % nx, cell / nx % ny, cell / (nx * ny)];
             let center: [f32; 3] = std::array::from_fn(|k| self.center_along(k, at[k]));
-            let there = self.cells[cell];
-            let is_nearer = there == EMPTY
-                || distance_sq(point, center)
-                    < distance_sq(self.features[there as usize].point, center);
-            if is_nearer {
-                self.cells[cell] = i;
+            let from_center =
+                |sample: u32| distance_sq(self.features[sample as usize].point.into(), center);
+            if cells[cell] == EMPTY || distance_sq(point, center) < from_center(cells[cell]) {
+                cells[cell] = i as u32;
             }
         }
+        cells
     }
 
-    /// Gives every cell the nearest of the samples that the cells of its row along `axis` name.
-    fn spread_along(&mut self, axis: usize) {
-        let [nx, ny, nz] = self.shape;
-        let strides = [1, nx, nx * ny];
-        let (u, v) = [(1, 2), (0, 2), (0, 1)][axis];
-        let n_rows = nx * ny * nz / self.shape[axis];
-        let place_of = |row: usize| [row % self.shape[u], row / self.shape[u]];
-        let cells_of = |row: usize| {
-            let [i, j] = place_of(row);
-            let first = i * strides[u] + j * strides[v];
-            (0..self.shape[axis]).map(move |k| first + k * strides[axis])
-        };
-        let rows: Vec<Vec<u32>> = (0..n_rows)
-            .into_par_iter()
-            .with_min_len(64)
-            .map_init(Envelope::default, |envelope, row| {
-                let [i, j] = place_of(row);
-                let (at_u, at_v) = (self.center_along(u, i), self.center_along(v, j));
-                envelope.parts.clear();
-                let named = cells_of(row).map(|cell| self.cells[cell]);
-                for name in named.filter(|&name| name != EMPTY) {
-                    let point = self.features[name as usize].point;
-                    let (across_u, across_v) = (point[u] - at_u, point[v] - at_v);
-                    envelope.add(Parabola {
-                        name,
-                        place: point[axis],
-                        height: across_u * across_u + across_v * across_v,
-                        from: f32::NEG_INFINITY,
-                    });
-                }
-                envelope.lowest_at((0..self.shape[axis]).map(|k| self.center_along(axis, k)))
-            })
-            .collect();
-        let [nx, ny, _] = self.shape;
-        let strides = [1, nx, nx * ny];
-        for (row, names) in rows.into_iter().enumerate() {
-            let first = row % self.shape[u] * strides[u] + row / self.shape[u] * strides[v];
-            for (k, name) in names.into_iter().enumerate() {
-                self.cells[first + k * strides[axis]] = name;
-            }
-        }
+    fn centers_along(&self, axis: usize) -> impl Iterator<Item = f32> + '_ {
+        (0..self.shape[axis]).map(move |cell| self.center_along(axis, cell))
     }
 }
 
@@ -226,8 +260,8 @@ struct Parabola {
     name: u32,
     /// Where the sample lies along the row.
     place: f32,
-    /// Its squared distance from the row.
-    height: f32,
+    /// Its squared distance from the row, and the square of its place.
+    reach: f32,
     /// From here on along the row no earlier sample is nearer.
     from: f32,
 }
@@ -239,25 +273,53 @@ struct Envelope {
 }
 
 impl Envelope {
-    /// Adds a parabola whose place lies beyond those of all before: each cell of a row names a
-    /// sample that lies, along the row, within that cell.
-    fn add(&mut self, new: Parabola) {
-        let reach = |p: &Parabola| p.height + p.place * p.place;
-        while let Some(last) = self.parts.last() {
-            let from = (reach(&new) - reach(last)) / (2.0 * (new.place - last.place));
-            if from > last.from {
-                self.parts.push(Parabola { from, ..new });
-                return;
+    /// That of the samples that the cells of a row along `axis` name; `at` are its cells along the other axes.
+    fn take(
+        &mut self,
+        grid: &FeatureGrid,
+        axis: usize,
+        at: [usize; 2],
+        names: impl Iterator<Item = u32>,
+    ) {
+        let (u, v) = [(1, 2), (0, 2), (0, 1)][axis];
+        let (at_u, at_v) = (grid.center_along(u, at[0]), grid.center_along(v, at[1]));
+        self.parts.clear();
+        // The last one is kept at hand: most are compared with the one before, and many replace it.
+        let mut last: Option<Parabola> = None;
+        for name in names.filter(|&name| name != EMPTY) {
+            let point = grid.features[name as usize].point;
+            let (across_u, across_v) = (point[u] - at_u, point[v] - at_v);
+            let height = across_u * across_u + across_v * across_v;
+            let mut new = Parabola {
+                name,
+                place: point[axis],
+                reach: height + point[axis] * point[axis],
+                from: f32::NEG_INFINITY,
+            };
+            // Its place lies beyond those of all before: each cell of a row names a sample that lies, along the
+            // row, within that cell.
+            while let Some(before) = last {
+                let from = (new.reach - before.reach) / (2.0 * (new.place - before.place));
+                if from > before.from {
+                    new.from = from;
+                    self.parts.push(before);
+                    break;
+                }
+                last = self.parts.pop();
             }
-            self.parts.pop();
+            last = Some(new);
         }
-        self.parts.push(new);
+        self.parts.extend(last);
     }
 
-    /// The nearest sample at each of the rising `places`.
-    fn lowest_at(&self, places: impl Iterator<Item = f32>) -> Vec<u32> {
+    /// Names the nearest sample at each of the rising `places`.
+    fn lowest_at<'n>(
+        &self,
+        places: impl Iterator<Item = f32>,
+        names: impl Iterator<Item = &'n mut u32>,
+    ) {
         let mut part = 0;
-        let nearest = |place: f32| {
+        for (place, name) in places.zip(names) {
             while self
                 .parts
                 .get(part + 1)
@@ -265,9 +327,8 @@ impl Envelope {
             {
                 part += 1;
             }
-            self.parts.get(part).map_or(EMPTY, |lowest| lowest.name)
-        };
-        places.map(nearest).collect()
+            *name = self.parts.get(part).map_or(EMPTY, |lowest| lowest.name);
+        }
     }
 }
 
@@ -282,6 +343,8 @@ fn distance_sq(a: [f32; 3], b: [f32; 3]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const LANES: usize = 4;
 
     /// Samples of a bent sheet with a wall, unevenly spread.
     fn samples(n: usize) -> Vec<(Point3, Vector3)> {
@@ -301,7 +364,8 @@ mod tests {
 
     /// The plain loop that the sweeps are compared with.
     fn nearest_distance(grid: &FeatureGrid, query: [f32; 3]) -> f32 {
-        let distances = grid.features().iter().map(|f| distance_sq(f.point, query));
+        let features = grid.features().iter();
+        let distances = features.map(|f| distance_sq(f.point.into(), query));
         distances.fold(f32::INFINITY, f32::min).sqrt()
     }
 
@@ -314,7 +378,7 @@ mod tests {
             for cell in (0..nx * ny * nz).step_by(7) {
                 let at = [cell % nx, cell / nx % ny, cell / (nx * ny)];
                 let center: [f32; 3] = std::array::from_fn(|k| grid.center_along(k, at[k]));
-                let found = distance_sq(grid.nearest(center).point, center).sqrt();
+                let found = distance_sq(grid.nearest(center).point.into(), center).sqrt();
                 let nearest = nearest_distance(&grid, center);
                 assert!(found <= nearest + grid.slack(), "{found} for {nearest}");
                 excess += (found - nearest) / grid.cell();
@@ -324,6 +388,25 @@ mod tests {
             // What a cell loses to the sweeps is small beside its own width.
             assert!(mean_excess < 0.1, "{mean_excess} cells for {n} samples");
         }
+    }
+
+    #[test]
+    fn four_queries_at_once_find_what_each_finds() {
+        let grid = FeatureGrid::build(&samples(4000), &GridSettings::default()).unwrap();
+        // All over the grid and beyond it, off the borders of cells.
+        let query = |i: usize| {
+            let share = |k: usize| ((i as f32 + 0.37) * [0.618, 0.754, 0.569][k]).fract() - 0.5;
+            [0, 1, 2].map(|k| 1.5 * share(k))
+        };
+        for first in (0..4000).step_by(LANES) {
+            let queries: [[f32; 3]; LANES] = std::array::from_fn(|l| query(first + l));
+            let lanes = [0, 1, 2].map(|k| Vec4::from_array(queries.map(|query| query[k])));
+            let expected = queries.map(|query| grid.nearest(query));
+            assert_eq!(grid.nearest_four(lanes), expected, "{queries:?}");
+        }
+        let nowhere = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY].map(Vec4::splat);
+        let found = grid.nearest_four(nowhere);
+        assert!(found.iter().all(|feature| *feature == found[0]));
     }
 
     #[test]

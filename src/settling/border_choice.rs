@@ -3,6 +3,8 @@
 
 mod hand;
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::chosen_pose::{ChosenPose, as_likely, at_least, distinct};
@@ -215,14 +217,14 @@ fn ratio_by_borders(behind: f64) -> f64 {
 }
 
 /// What poses of two parts are compared by.
-struct PoseComparison<'a> {
-    context: &'a PairContext<'a>,
+struct PoseComparison<'c, 'a> {
+    context: &'c PairContext<'a>,
     distances: Distances,
     /// Borders of both, looked for as far as under first poses.
-    borders: BorderComparison<'a>,
+    borders: Arc<BorderComparison<'a>>,
     /// The refinement of first poses, and of those that are nearly there.
-    roughly: Refinement<'a>,
-    finely: Refinement<'a>,
+    roughly: Refinement<'c, 'a>,
+    finely: Refinement<'c, 'a>,
 }
 
 /// Shares of the smaller part's borders under a pose; [`Refined`] says of what.
@@ -318,8 +320,8 @@ impl Refined {
     }
 }
 
-impl<'a> PoseComparison<'a> {
-    fn new(context: &'a PairContext<'a>, scale: f64) -> Self {
+impl<'c, 'a> PoseComparison<'c, 'a> {
+    fn new(context: &'c PairContext<'a>, scale: f64) -> Self {
         let distances = context.distances(scale);
         Self {
             context,

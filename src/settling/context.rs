@@ -1,7 +1,8 @@
 //! What all steps are given: both parts, what they are compared by, and the request to cancel.
 
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
+use super::free_motion_search::FamilyBorders;
 use crate::assess::borders::BorderComparison;
 use crate::assess::contact::ContactSearch;
 use crate::assess::evidence::{EvidenceSearch, PoseEvidence};
@@ -22,8 +23,13 @@ pub struct PairContext<'a> {
     corners: [Point3; 8],
     /// The poses under which holes lie on like ones, found when first asked for.
     pub(super) on_holes: OnceLock<Vec<Similarity>>,
+    /// What the search along families of poses compares, the target as the smaller part or the source, prepared when
+    /// first asked for.
+    pub(super) borders_of_families: [OnceLock<Option<FamilyBorders>>; 2],
     /// The statements made so far, by pose: several steps ask about the same one.
     shapes: Mutex<Vec<(Similarity, ShapeStatement)>>,
+    /// The borders prepared so far, by scale and reach.
+    borders: Mutex<Vec<([f64; 2], Arc<BorderComparison<'a>>)>>,
 }
 
 impl<'a> PairContext<'a> {
@@ -40,7 +46,9 @@ impl<'a> PairContext<'a> {
             monitor,
             corners: source.mesh().aabb().corners(),
             on_holes: OnceLock::new(),
+            borders_of_families: Default::default(),
             shapes: Mutex::default(),
+            borders: Mutex::default(),
         }
     }
 
@@ -69,26 +77,44 @@ impl<'a> PairContext<'a> {
         ContactSearch::new(self.surfaces(), scale, reach, max_nodes)
     }
 
-    /// The borders of both, looked for within `reach`.
-    pub(super) fn borders(&self, scale: f64, reach: f64) -> BorderComparison<'a> {
-        BorderComparison::new(self.surfaces(), scale, reach)
+    /// The borders of both, looked for within `reach`, prepared when first asked for.
+    pub(super) fn borders(&self, scale: f64, reach: f64) -> Arc<BorderComparison<'a>> {
+        let key = [scale, reach];
+        let known = lock(&self.borders)
+            .iter()
+            .find(|(of, _)| *of == key)
+            .cloned();
+        if let Some((_, borders)) = known {
+            return borders;
+        }
+        // Two steps at once may both prepare them: a lock held meanwhile could wait for its own thread.
+        let borders = Arc::new(BorderComparison::new(self.surfaces(), scale, reach));
+        lock(&self.borders).push((key, Arc::clone(&borders)));
+        borders
     }
 
     /// The statement about the shape under a pose, made when first asked for.
     pub(super) fn shape(&self, pose: &Similarity) -> ShapeStatement {
-        let shapes = || self.shapes.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = shapes().iter().find(|(of, _)| of == pose).cloned();
+        let known = lock(&self.shapes)
+            .iter()
+            .find(|(of, _)| of == pose)
+            .cloned();
         if let Some((_, shape)) = known {
             return shape;
         }
-        let shape = shape_statement(self.surfaces(), pose, self.settings, Outlines::Compared);
-        shapes().push((*pose, shape.clone()));
+        let shape = self.statement(pose, Outlines::Compared);
+        lock(&self.shapes).push((*pose, shape.clone()));
         shape
     }
 
     /// The same with the outlines left out.
     pub(super) fn shape_without_outlines(&self, pose: &Similarity) -> ShapeStatement {
-        shape_statement(self.surfaces(), pose, self.settings, Outlines::LeftOut)
+        self.statement(pose, Outlines::LeftOut)
+    }
+
+    fn statement(&self, pose: &Similarity, outlines: Outlines) -> ShapeStatement {
+        let borders = self.borders(pose.scale, self.distances(pose.scale).border_reach);
+        shape_statement(&borders, pose, self.settings, outlines)
     }
 
     /// A pose moved step by step: `next` gives the next pose, and the motion that is none any more. It ends there,
@@ -115,4 +141,9 @@ impl<'a> PairContext<'a> {
         }
         Ok(pose)
     }
+}
+
+/// What was found so far; each entry is whole, even if a thread that added one panicked.
+fn lock<T>(found: &Mutex<T>) -> MutexGuard<'_, T> {
+    found.lock().unwrap_or_else(PoisonError::into_inner)
 }

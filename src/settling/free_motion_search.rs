@@ -29,6 +29,9 @@ const CUT: f64 = 0.02;
 const CUTS: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
 /// The lattice of a motion in one direction is so many times finer: one that steps over a hole finds its other side.
 const FINER_ALONG_ONE: f64 = 8.0;
+/// Shifts of a lattice in a plane run at this angle to the axes (34°), as few edges of parts do: along an edge they
+/// would lay whole rows of poses on it alike, which leave no room for the right one.
+const OBLIQUE: f64 = 0.6;
 /// Turns of the lattice lie so many of its steps apart where the part is widest, …
 const STEPS_OF_TURN: f64 = 2.0;
 /// … and there are no fewer and no more of them than these.
@@ -114,34 +117,35 @@ pub(super) fn poses_along(
     context.check()?;
     let PairContext { source, target, .. } = *context;
     let moves_source = is_source_smaller(source, target, pose.scale);
-    let still = Similarity::identity();
-    let (data, model) = if moves_source {
-        ((source, pose), (target, &still))
+    let (data, model, model_from_data, free) = if moves_source {
+        (source, target, *pose, *free)
     } else {
-        ((target, &still), (source, pose))
+        let source_from_target = pose.inverse();
+        let free = free.moved(&source_from_target);
+        (target, source, source_from_target, free)
     };
-    let Some(search) = BorderSearch::new(data, model) else {
+    let borders = context.borders_of_families[usize::from(moves_source)]
+        .get_or_init(|| FamilyBorders::of(data, model));
+    let Some(borders) = borders else {
         return Ok(Vec::new());
     };
-    let axes = axes(free, [box_of(data), box_of(model)], search.cut);
+    let points = data.mesh().positions().iter();
+    let moved: Vec<Point3> = points.map(|p| model_from_data.apply(p)).collect();
+    let boxes = [Aabb::of_points(&moved), model.mesh().aabb()];
+    let axes = axes(&free, boxes, borders.cut);
     if axes.is_empty() {
         return Ok(Vec::new());
     }
-    let found = search.run(&axes, n, context)?;
+    let found = borders.under(&model_from_data).run(&axes, n, context)?;
     let posed = found.into_iter().map(|motion| {
+        let model_from_data = motion.after(&model_from_data);
         if moves_source {
-            motion.after(pose)
+            model_from_data
         } else {
-            motion.inverse().after(pose)
+            model_from_data.inverse()
         }
     });
     Ok(posed.collect())
-}
-
-fn box_of((surface, pose): (&Surface, &Similarity)) -> Aabb {
-    let points = surface.mesh().positions().iter().map(|p| pose.apply(p));
-    let points: Vec<Point3> = points.collect();
-    Aabb::of_points(&points)
 }
 
 /// The lattice of motions of a family: shifts as far as most of the smaller part stays beside the larger
@@ -156,7 +160,8 @@ fn axes(free: &FreeMotion, [data, model]: [Aabb; 2], cut: f64) -> Vec<Axis> {
     } else {
         Vector3::y()
     };
-    let u = direction.cross(&other_axis).normalize();
+    let oblique = Rotation::from_scaled_axis(direction * OBLIQUE);
+    let u = oblique * direction.cross(&other_axis).normalize();
     let v = direction.cross(&u);
     let (center, on_axis) = (data.center(), free.point);
     let radius = |axis: &Vector3, at: &Point3| {
@@ -245,54 +250,87 @@ struct Local {
     weight: f64,
 }
 
-/// Borders of both parts in the frame of a grid over those of the larger one.
-struct BorderSearch {
-    grid: FeatureGrid,
-    data: Vec<Local>,
+impl Local {
+    fn of(place: &Place, weight: f64, grid: &FeatureGrid) -> Self {
+        Self {
+            point: (place.point - grid.origin()) * grid.scale(),
+            tangent: place.tangent,
+            across: place.tangent.cross(&place.normal),
+            weight,
+        }
+    }
+}
+
+/// The borders of both parts for searches along any family of poses: places along those of the smaller part, which
+/// is the data, and a grid over those of the larger one.
+pub(super) struct FamilyBorders {
+    /// Each in the frame of its part, with its weight; every beginning is spread over all of them.
+    data: Vec<(Place, f64)>,
+    /// Diagonal of the data.
+    data_extent: f64,
+    /// In the frame of the grid.
     model: Vec<Local>,
-    /// In the target's unit.
+    grid: FeatureGrid,
+    /// In the model's unit.
     cut: f64,
+}
+
+/// The borders of both parts in the frame of the grid, from one pose of a family on.
+struct FamilySearch<'a> {
+    borders: &'a FamilyBorders,
+    data: Vec<Local>,
     extent: f64,
 }
 
-impl BorderSearch {
-    fn new(data: (&Surface, &Similarity), model: (&Surface, &Similarity)) -> Option<Self> {
-        let model_places: Vec<Place> = places(model, N_MODEL_PLACES, |_| true);
+impl FamilyBorders {
+    /// `None` where a part has no borders.
+    fn of(data: &Surface, model: &Surface) -> Option<Self> {
+        let still = Similarity::identity();
+        let model_places: Vec<Place> = places((model, &still), N_MODEL_PLACES, |_| true);
         let samples: Vec<(Point3, Vector3)> = model_places
             .iter()
             .map(|place| (place.point, place.tangent))
             .collect();
         let grid = FeatureGrid::build(&samples, &GRID)?;
-        let holes = places(data, N_PLACES / 2, |is_hole| is_hole);
+        let holes = places((data, &still), N_PLACES / 2, |is_hole| is_hole);
         let n_trims = if holes.is_empty() {
             N_PLACES
         } else {
             N_PLACES / 2
         };
-        let trims = places(data, n_trims, |is_hole| !is_hole);
-        let local = |place: &Place, weight: f64| Local {
-            point: (place.point - grid.origin()) * grid.scale(),
-            tangent: place.tangent,
-            across: place.tangent.cross(&place.normal),
-            weight,
-        };
-        let mut own: Vec<Local> = Vec::new();
+        let trims = places((data, &still), n_trims, |is_hole| !is_hole);
+        let mut own: Vec<(Place, f64)> = Vec::new();
         for kind in [&holes, &trims] {
             let weight = 1.0 / kind.len().max(1) as f64;
-            own.extend(kind.iter().map(|place| local(place, weight)));
+            own.extend(kind.iter().map(|place| (*place, weight)));
         }
         if own.is_empty() {
             return None;
         }
+        let model_places = model_places.iter();
         Some(Self {
             data: scattered(&own),
-            model: model_places.iter().map(|place| local(place, 1.0)).collect(),
-            cut: CUT * model.0.measures().diagonal * model.1.scale,
-            extent: data.0.measures().diagonal * data.1.scale,
+            data_extent: data.measures().diagonal,
+            model: model_places.map(|p| Local::of(p, 1.0, &grid)).collect(),
             grid,
+            cut: CUT * model.measures().diagonal,
         })
     }
 
+    fn under(&self, model_from_data: &Similarity) -> FamilySearch<'_> {
+        let data = self.data.iter().map(|(place, weight)| {
+            let place = place.moved(model_from_data);
+            Local::of(&place, *weight, &self.grid)
+        });
+        FamilySearch {
+            borders: self,
+            data: data.collect(),
+            extent: self.data_extent * model_from_data.scale,
+        }
+    }
+}
+
+impl FamilySearch<'_> {
     fn run(
         &self,
         axes: &[Axis],
@@ -304,7 +342,7 @@ impl BorderSearch {
         let loss = |index: u32, n: usize| {
             let motion = motion(axes, &amounts(axes, index as usize));
             let places = &self.data[..n.min(self.data.len())];
-            (self.loss(places, &motion, self.cut), index)
+            (self.loss(places, &motion, self.borders.cut), index)
         };
         let by_loss = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         let mut field: Vec<(f64, u32)> = all.map(|index| loss(index, N_FIRST)).collect();
@@ -320,7 +358,7 @@ impl BorderSearch {
             .map(|&(_, index)| {
                 let amounts = self.refined(axes, amounts(axes, index as usize), first);
                 (
-                    self.loss(&self.data, &motion(axes, &amounts), self.cut),
+                    self.loss(&self.data, &motion(axes, &amounts), self.borders.cut),
                     amounts,
                 )
             })
@@ -334,7 +372,7 @@ impl BorderSearch {
             .map(|&(_, begun)| {
                 let motion = motion(axes, &self.refined(axes, begun, then));
                 RatedMotion {
-                    loss: self.loss(&self.data, &motion, CUTS[2] * self.cut),
+                    loss: self.loss(&self.data, &motion, CUTS[2] * self.borders.cut),
                     motion,
                 }
             })
@@ -351,7 +389,7 @@ impl BorderSearch {
                     let point = self.outer(&place.point);
                     (candidate.motion.apply(&point) - other.apply(&point)).norm()
                 });
-                moved.fold(0.0, f64::max) < NEAR * self.cut.max(NEAR_EXTENT * self.extent)
+                moved.fold(0.0, f64::max) < NEAR * self.borders.cut.max(NEAR_EXTENT * self.extent)
             };
             if !distinct.iter().any(is_near) {
                 distinct.push(candidate.motion);
@@ -364,7 +402,7 @@ impl BorderSearch {
     fn refined(&self, axes: &[Axis], mut amounts: [f64; 3], shares: &[f64]) -> [f64; 3] {
         for share in shares {
             for _ in 0..N_STEPS {
-                let step = self.step(axes, &amounts, share * self.cut);
+                let step = self.step(axes, &amounts, share * self.borders.cut);
                 for (amount, more) in amounts.iter_mut().zip(step) {
                     *amount += more;
                 }
@@ -374,14 +412,14 @@ impl BorderSearch {
     }
 
     fn outer(&self, local: &Vector3) -> Point3 {
-        self.grid.origin() + local / self.grid.scale()
+        self.borders.grid.origin() + local / self.borders.grid.scale()
     }
 
     /// The motion in the frame of the grid.
     fn in_grid(&self, motion: &Similarity) -> Similarity {
-        let origin = self.grid.origin();
+        let origin = self.borders.grid.origin();
         Similarity {
-            translation: (motion.apply(origin) - origin) * self.grid.scale(),
+            translation: (motion.apply(origin) - origin) * self.borders.grid.scale(),
             ..*motion
         }
     }
@@ -389,7 +427,7 @@ impl BorderSearch {
     /// The border of the larger part nearest to a place that was moved, with their distance along it.
     fn beside(&self, point: &Vector3, tangent: &Vector3) -> Option<&Local> {
         let at = [point.x as f32, point.y as f32, point.z as f32];
-        let found = &self.model[self.grid.nearest_index(at) as usize];
+        let found = &self.borders.model[self.borders.grid.nearest_index(at) as usize];
         (found.tangent.dot(tangent).abs() as f32 > PARALLEL).then_some(found)
     }
 
@@ -397,7 +435,7 @@ impl BorderSearch {
     /// square of the cut.
     fn loss(&self, places: &[Local], motion: &Similarity, cut: f64) -> f64 {
         let motion = self.in_grid(motion);
-        let per_cut = 1.0 / (cut * self.grid.scale());
+        let per_cut = 1.0 / (cut * self.borders.grid.scale());
         let (mut sum, mut total) = (0.0, 0.0);
         for place in places {
             let point = motion.rotation * place.point + motion.translation;
@@ -429,9 +467,9 @@ impl BorderSearch {
             let Some(border) = self.beside(&point, &tangent) else {
                 continue;
             };
-            let gap = (point - border.point).dot(&border.across) / self.grid.scale();
+            let gap = (point - border.point).dot(&border.across) / self.borders.grid.scale();
             let ratio = gap / cut;
-            let away = (point - border.point).norm() / self.grid.scale();
+            let away = (point - border.point).norm() / self.borders.grid.scale();
             if ratio.abs() >= 1.0 || away > ALONG * cut {
                 continue;
             }
@@ -462,7 +500,7 @@ fn keep_first<T>(list: &mut Vec<T>, n: usize, order: impl Fn(&T, &T) -> std::cmp
 }
 
 /// Places in an order whose every beginning is spread over all of them.
-fn scattered(places: &[Local]) -> Vec<Local> {
+fn scattered<T: Copy>(places: &[T]) -> Vec<T> {
     let n = places.len();
     // A step near the golden section of the count that shares no factor with it.
     let mut step = (0.618 * n as f64) as usize;
@@ -507,60 +545,4 @@ fn motion(axes: &[Axis], amounts: &[f64; 3]) -> Similarity {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::assess::AssessSettings;
-    use crate::geometry::TriMesh;
-    use crate::monitor::Monitor;
-
-    /// A flat sheet of 60 by 40 cells of 2 mm with three holes, of which the columns from `first` on are
-    /// there.
-    fn plate(first: usize) -> Surface {
-        let (columns, rows) = (60, 40);
-        let point = |i: usize| {
-            let (x, y) = (i % (columns + 1), i / (columns + 1));
-            Point3::new(2.0 * x as f64, 2.0 * y as f64, 0.0)
-        };
-        let holes = [(40, 6, 4), (50, 28, 6), (12, 20, 5)];
-        let is_solid = |(x, y): (usize, usize)| {
-            let within = |&(left, low, size): &(usize, usize, usize)| {
-                (left..left + size).contains(&x) && (low..low + size).contains(&y)
-            };
-            x >= first && !holes.iter().any(within)
-        };
-        let cells = (0..columns * rows).map(|i| (i % columns, i / columns));
-        let triangles = cells.filter(|&cell| is_solid(cell)).flat_map(|(x, y)| {
-            let a = (y * (columns + 1) + x) as u32;
-            let up = a + columns as u32 + 1;
-            [[a, a + 1, up + 1], [a, up + 1, up]]
-        });
-        let points = (0..(columns + 1) * (rows + 1)).map(point);
-        let mesh = TriMesh::new(points.collect(), triangles.collect()).unwrap();
-        Surface::new(&mesh, "source").unwrap()
-    }
-
-    #[test]
-    fn a_piece_of_a_plate_is_found_by_its_holes_whichever_side_it_is_on() {
-        let (whole, piece) = (plate(0), plate(35));
-        let free = FreeMotion {
-            kind: FreeMotionKind::Flat,
-            direction: Vector3::z(),
-            point: Point3::origin(),
-        };
-        let turn = Generator::Turn(Vector3::z(), Point3::new(90.0, 40.0, 0.0)).motion(2.0);
-        let shift = Generator::Shift(Vector3::new(-31.0, 12.0, 0.0)).motion(1.0);
-        let start = shift.after(&turn);
-        let off = |surface: &Surface, pose: &Similarity| {
-            let points = surface.mesh().positions().iter();
-            let moved = points.map(|p| (pose.apply(p) - p).norm());
-            moved.fold(0.0, f64::max)
-        };
-        assert!(off(&piece, &start) > 50.0);
-        let (settings, monitor) = (AssessSettings::default(), Monitor::silent());
-        for (source, target) in [(&piece, &whole), (&whole, &piece)] {
-            let context = PairContext::new([source, target], &settings, &monitor);
-            let found = poses_along(&context, &start, &free, 4).unwrap();
-            assert!(off(source, &found[0]) < 0.5, "{}", off(source, &found[0]));
-        }
-    }
-}
+mod tests;

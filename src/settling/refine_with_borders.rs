@@ -1,6 +1,8 @@
 //! The last step of a pose: where surfaces alone leave it free to slide, borders and holes hold it, and an
 //! offset of the sheets does not push it aside.
 
+use std::sync::Arc;
+
 use super::context::PairContext;
 use crate::assess::borders::{BorderComparison, Borders, HOLES_THAT_HOLD};
 use crate::assess::contact::MAX_NODES;
@@ -49,23 +51,23 @@ pub(super) enum Least {
 }
 
 /// What moving poses of a pair needs: both borders are prepared once for all of them.
-pub(super) struct Refinement<'a> {
-    context: &'a PairContext<'a>,
-    borders: BorderComparison<'a>,
+pub(super) struct Refinement<'c, 'a> {
+    context: &'c PairContext<'a>,
+    borders: Arc<BorderComparison<'a>>,
     distances: Distances,
     max_nodes: usize,
 }
 
-impl<'a> Refinement<'a> {
+impl<'c, 'a> Refinement<'c, 'a> {
     /// For poses of this scale; about `max_nodes` nodes of the smaller part are looked at.
-    pub(super) fn new(context: &'a PairContext<'a>, scale: f64, max_nodes: usize) -> Self {
+    pub(super) fn new(context: &'c PairContext<'a>, scale: f64, max_nodes: usize) -> Self {
         let reach = context.distances(scale).refined_border_reach;
         Self::within(context, scale, max_nodes, reach)
     }
 
     /// [`Refinement::new`] for first poses, whose borders lie farther apart.
     pub(super) fn of_first_poses(
-        context: &'a PairContext<'a>,
+        context: &'c PairContext<'a>,
         scale: f64,
         max_nodes: usize,
     ) -> Self {
@@ -74,7 +76,7 @@ impl<'a> Refinement<'a> {
     }
 
     /// With borders looked for within at least `reach`.
-    fn within(context: &'a PairContext<'a>, scale: f64, max_nodes: usize, reach: f64) -> Self {
+    fn within(context: &'c PairContext<'a>, scale: f64, max_nodes: usize, reach: f64) -> Self {
         let distances = context.distances(scale);
         let reach = reach.max(LEAST_REACH * distances.tolerance.remainder);
         Self {

@@ -339,7 +339,7 @@ fn ids_that_both_files_have_are_offset_on_the_cards() {
     ];
     let output = shapematch(folder.path(), &line);
     let told = String::from_utf8_lossy(&output.stdout);
-    assert!(told.contains("with the ids of some in same.k"), "{told}");
+    assert!(told.contains("and same.k share ids ("), "{told}");
     fs::write(
         at("both.k"),
         "*KEYWORD\n*INCLUDE\nmesh.k\n*INCLUDE\ncards.k\n*END\n",

@@ -97,7 +97,7 @@ pub(crate) fn correspond_on_grid(
         let hint = grid.nearest_index(local);
         let feature = &grid.features()[hint as usize];
         let off = grid.to_outer(std::array::from_fn(|k| local[k] - feature.point[k]));
-        let normal = Vector3::from(feature.normal.map(f64::from));
+        let normal = Vector3::from(feature.normal.to_array().map(f64::from));
         let height = off.dot(&normal);
         let along = off - normal * height;
         let beyond = along * (1.0 - (slack / along.norm().max(slack)).min(1.0));

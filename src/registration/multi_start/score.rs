@@ -214,7 +214,7 @@ fn is_beyond(grid: &FeatureGrid, point: &Point3) -> bool {
     let local = grid.to_local(point);
     let nearest = grid.nearest(local);
     let off = Vector3::from_fn(|k, _| f64::from(local[k] - nearest.point[k]));
-    let normal = Vector3::from(nearest.normal.map(f64::from));
+    let normal = Vector3::from(nearest.normal.to_array().map(f64::from));
     let along = off - normal * off.dot(&normal);
     along.norm() > BEYOND * f64::from(grid.cell())
 }

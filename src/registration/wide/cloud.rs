@@ -1,5 +1,7 @@
 //! Samples of both parts: evenly spread points, and the data's in blocks that are moved together.
 
+use glam::Vec4;
+
 use super::LANES;
 use crate::geometry::{Matrix3, Point3, Similarity, Vector3, z_order};
 use crate::registration::icp::orthonormal;
@@ -51,11 +53,35 @@ pub(super) struct Cloud {
     pub(super) is_mirrored: bool,
 }
 
-/// Points and normals of [`LANES`] samples, coordinate by coordinate.
+/// Points and normals of [`LANES`] samples in two halves, which are worked on side by side.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Block {
-    pub(super) point: [[f32; LANES]; 3],
-    pub(super) normal: [[f32; LANES]; 3],
+    pub(super) halves: [HalfBlock; 2],
+}
+
+/// Four samples, coordinate by coordinate.
+#[derive(Clone, Copy, Default)]
+pub(super) struct HalfBlock {
+    pub(super) point: [Vec4; 3],
+    pub(super) normal: [Vec4; 3],
+}
+
+impl Block {
+    fn set(&mut self, sample: usize, point: [f32; 3], normal: [f32; 3]) {
+        let (half, lane) = (&mut self.halves[sample / 4], sample % 4);
+        for k in 0..3 {
+            half.point[k][lane] = point[k];
+            half.normal[k][lane] = normal[k];
+        }
+    }
+
+    pub(super) fn point(&self, sample: usize) -> [f32; 3] {
+        self.halves[sample / 4].point.map(|x| x[sample % 4])
+    }
+
+    pub(super) fn normal(&self, sample: usize) -> [f32; 3] {
+        self.halves[sample / 4].normal.map(|x| x[sample % 4])
+    }
 }
 
 impl Cloud {
@@ -71,11 +97,8 @@ impl Cloud {
         for (place, rank) in bit_reversed(blocks.len() * LANES).into_iter().enumerate() {
             let (point, normal) = &samples[order[rank] as usize];
             let local = (point - center) * scale;
-            let block = &mut blocks[place / LANES];
-            for k in 0..3 {
-                block.point[k][place % LANES] = local[k] as f32;
-                block.normal[k][place % LANES] = normal[k] as f32;
-            }
+            let [point, normal] = [local, *normal].map(|v| v.cast::<f32>().into());
+            blocks[place / LANES].set(place % LANES, point, normal);
         }
         Self {
             blocks,
@@ -89,9 +112,9 @@ impl Cloud {
     /// The same samples mirrored: the part of the opposite hand.
     pub(super) fn mirrored(&self) -> Self {
         let mut blocks = self.blocks.clone();
-        for block in &mut blocks {
-            block.point[0] = block.point[0].map(|x| -x);
-            block.normal[0] = block.normal[0].map(|x| -x);
+        for half in blocks.iter_mut().flat_map(|block| &mut block.halves) {
+            half.point[0] = -half.point[0];
+            half.normal[0] = -half.normal[0];
         }
         Self {
             blocks,
@@ -102,11 +125,9 @@ impl Cloud {
 
     /// Its points, block by block.
     pub(super) fn points(&self) -> impl Iterator<Item = Vector3> + '_ {
-        let at = |block: &Block, l: usize| {
-            Vector3::from([0, 1, 2].map(|k| f64::from(block.point[k][l])))
-        };
         let blocks = self.blocks.iter();
-        blocks.flat_map(move |block| (0..LANES).map(move |l| at(block, l)))
+        let points = blocks.flat_map(|block| (0..LANES).map(|sample| block.point(sample)));
+        points.map(|point| Vector3::from(point.map(f64::from)))
     }
 
     /// The cloud of the piece of the surface around a point that has this share of the area.
@@ -126,11 +147,8 @@ impl Cloud {
         for (place, &i) in near.iter().enumerate() {
             let local = points[i] - middle;
             (low, high) = (low.inf(&local), high.sup(&local));
-            let (from, to) = (&self.blocks[i / LANES], &mut blocks[place / LANES]);
-            for k in 0..3 {
-                to.point[k][place % LANES] = local[k] as f32;
-                to.normal[k][place % LANES] = from.normal[k][i % LANES];
-            }
+            let normal = self.blocks[i / LANES].normal(i % LANES);
+            blocks[place / LANES].set(place % LANES, local.cast::<f32>().into(), normal);
         }
         let data_from_local = self.local_from_data().inverse();
         Self {

@@ -26,7 +26,7 @@ use holes::Holes;
 use rounds::{Ground, Round};
 use seeds::SeedCounts;
 
-/// Points that are worked on side by side.
+/// Samples of a block.
 const LANES: usize = 8;
 /// Samples of the larger part in its grid.
 const N_GRID_SAMPLES: usize = 30_000;

@@ -146,13 +146,14 @@ struct Scene {
 
 impl Scene {
     fn new(cloud: &Cloud, grid: &FeatureGrid) -> Self {
-        let normals = cloud.blocks.iter().flat_map(|block| {
-            (0..LANES).map(move |l| local([0, 1, 2].map(|k| block.normal[k][l])))
-        });
+        let blocks = cloud.blocks.iter();
+        let normals = blocks.flat_map(|block| (0..LANES).map(|l| local(block.normal(l))));
         let data: Vec<Sample> = cloud.points().zip(normals).collect();
         let step = grid.features().len().div_ceil(N_MODEL_SAMPLES);
         let model = grid.features().iter().step_by(step);
-        let model = model.map(|f| (local(f.point), local(f.normal))).collect();
+        let model = model
+            .map(|f| (local(f.point.into()), local(f.normal.into())))
+            .collect();
         let middle = data
             .iter()
             .map(|(point, _)| *point)

@@ -1,9 +1,12 @@
 //! One robust point-to-plane step on the grid, and what a pose is worth.
+//!
+//! Nearly all of the wide search is spent here. `map` of arrays is left out where it was measured to become a call.
 
+use glam::{Mat4, Vec3A, Vec4};
 use nalgebra::{Cholesky, Rotation3, SMatrix, SVector};
 
 use super::LANES;
-use super::cloud::{Block, Cloud, Motion32};
+use super::cloud::{Cloud, HalfBlock, Motion32};
 use crate::geometry::{Matrix3, Vector3};
 use crate::search::FeatureGrid;
 
@@ -16,8 +19,6 @@ const MAX_TURN: f64 = 0.5;
 /// Damping of a step, as a share of the mean stiffness.
 const DAMPING: f64 = 1e-4;
 
-type Lane = [f32; LANES];
-
 /// Pairs farther apart than `cut` do not count; lengths in grid units.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reach {
@@ -27,59 +28,103 @@ pub(super) struct Reach {
     pub(super) slack: f32,
 }
 
-/// A block of the moved cloud with its partners.
+/// Four samples of the moved cloud with their partners.
 struct Pairs {
     /// Moved points about the centroid.
-    arm: [Lane; 3],
+    arm: [Vec4; 3],
     /// From the partner to the point.
-    off: [Lane; 3],
+    off: [Vec4; 3],
     /// Normals of the partners.
-    normal: [Lane; 3],
+    normal: [Vec4; 3],
     /// Signed distance from the partner's plane.
-    height: Lane,
+    height: Vec4,
     /// 1 − d²/c² of what counts, else 0.
-    nearness: Lane,
+    nearness: Vec4,
 }
 
-#[inline(always)]
-fn rotated(rows: &[[f32; 3]; 3], v: &[Lane; 3]) -> [Lane; 3] {
-    std::array::from_fn(|i| {
-        std::array::from_fn(|l| rows[i][0] * v[0][l] + rows[i][1] * v[1][l] + rows[i][2] * v[2][l])
-    })
-}
-
-#[inline(always)]
-fn pair_up(block: &Block, grid: &FeatureGrid, motion: &Motion32, sign: f32, reach: Reach) -> Pairs {
-    let arm = rotated(&motion.rotation, &block.point);
-    let turned = rotated(&motion.rotation, &block.normal);
-    let (mut off, mut normal) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
-    for l in 0..LANES {
-        let moved: [f32; 3] = std::array::from_fn(|k| arm[k][l] + motion.translation[k]);
-        let partner = grid.nearest(moved);
-        for k in 0..3 {
-            off[k][l] = moved[k] - partner.point[k];
-            normal[k][l] = partner.normal[k];
-        }
+impl Pairs {
+    #[inline(always)]
+    fn weight(&self) -> Vec4 {
+        self.nearness * self.nearness
     }
-    let dot = |a: &[Lane; 3], b: &[Lane; 3], l: usize| {
-        a[0][l] * b[0][l] + a[1][l] * b[1][l] + a[2][l] * b[2][l]
-    };
-    let height: Lane = std::array::from_fn(|l| dot(&off, &normal, l));
+
+    /// How much each unknown moves the point away from the plane, and how far it is.
+    #[inline(always)]
+    fn row(&self) -> [Vec4; 7] {
+        let [a, b, c] = cross(&self.arm, &self.normal);
+        let [x, y, z] = self.normal;
+        [a, b, c, x, y, z, self.height]
+    }
+
+    /// What [`Sums::point`] sums up beside the weight.
+    #[inline(always)]
+    fn of_points(&self) -> [Vec4; 15] {
+        let [x, y, z] = self.arm;
+        let [u, v, w] = self.off;
+        let [p, q, r] = cross(&self.arm, &self.off);
+        let (xx, xy, xz, yy, yz, zz) = (x * x, x * y, x * z, y * y, y * z, z * z);
+        [x, y, z, xx, xy, xz, yy, yz, zz, u, v, w, p, q, r]
+    }
+}
+
+#[inline(always)]
+fn rotated(rows: &[[f32; 3]; 3], v: &[Vec4; 3]) -> [Vec4; 3] {
+    let along = |row: &[f32; 3]| v[0] * row[0] + v[1] * row[1] + v[2] * row[2];
+    [along(&rows[0]), along(&rows[1]), along(&rows[2])]
+}
+
+#[inline(always)]
+fn difference(a: &[Vec4; 3], b: &[Vec4; 3]) -> [Vec4; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+fn dot(a: &[Vec4; 3], b: &[Vec4; 3]) -> Vec4 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn cross(a: &[Vec4; 3], b: &[Vec4; 3]) -> [Vec4; 3] {
+    let along = |j: usize, k: usize| a[j] * b[k] - a[k] * b[j];
+    [along(1, 2), along(2, 0), along(0, 1)]
+}
+
+/// Four vectors coordinate by coordinate.
+#[inline(always)]
+fn by_coordinate([a, b, c, d]: [Vec3A; 4]) -> [Vec4; 3] {
+    let columns = Mat4::from_cols(a.extend(0.0), b.extend(0.0), c.extend(0.0), d.extend(0.0));
+    let turned = columns.transpose();
+    [turned.x_axis, turned.y_axis, turned.z_axis]
+}
+
+#[inline(always)]
+fn pair_up(
+    half: &HalfBlock,
+    grid: &FeatureGrid,
+    motion: &Motion32,
+    sign: f32,
+    reach: Reach,
+) -> Pairs {
+    let arm = rotated(&motion.rotation, &half.point);
+    let turned = rotated(&motion.rotation, &half.normal);
+    let [x, y, z] = motion.translation;
+    let moved = [arm[0] + x, arm[1] + y, arm[2] + z];
+    let [a, b, c, d] = grid.nearest_four(moved);
+    let point = by_coordinate([a.point, b.point, c.point, d.point]);
+    let normal = by_coordinate([a.normal, b.normal, c.normal, d.normal]);
+    let off = difference(&moved, &point);
+    let height = dot(&off, &normal);
+    let height_sq = height * height;
+    let along_sq = (dot(&off, &off) - height_sq - reach.slack * reach.slack).max(Vec4::ZERO);
     let per_cut_sq = 1.0 / (reach.cut * reach.cut);
-    let slack_sq = reach.slack * reach.slack;
-    let nearness = std::array::from_fn(|l| {
-        let height_sq = height[l] * height[l];
-        let along_sq = (dot(&off, &off, l) - height_sq - slack_sq).max(0.0);
-        let nearness = (1.0 - (height_sq + along_sq) * per_cut_sq).max(0.0);
-        let agrees = sign * dot(&turned, &normal, l) >= MIN_COS;
-        if agrees { nearness } else { 0.0 }
-    });
+    let nearness = (1.0 - (height_sq + along_sq) * per_cut_sq).max(Vec4::ZERO);
+    let agrees = (dot(&turned, &normal) * sign).cmpge(Vec4::splat(MIN_COS));
     Pairs {
         arm,
         off,
         normal,
         height,
-        nearness,
+        nearness: Vec4::select(agrees, nearness, Vec4::ZERO),
     }
 }
 
@@ -91,77 +136,49 @@ pub(super) fn loss(
     (motion, sign): (&Motion32, f32),
     reach: Reach,
 ) -> f32 {
-    let mut kept = [0.0; LANES];
+    let mut kept = Vec4::ZERO;
     for block in &cloud.blocks[..n_blocks] {
-        let pairs = pair_up(block, grid, motion, sign, reach);
-        for (sum, u) in kept.iter_mut().zip(pairs.nearness) {
-            *sum += u * u * u;
+        for half in &block.halves {
+            let nearness = pair_up(half, grid, motion, sign, reach).nearness;
+            kept += nearness * nearness * nearness;
         }
     }
-    1.0 - kept.iter().sum::<f32>() / (n_blocks * LANES) as f32
+    1.0 - kept.element_sum() / (n_blocks * LANES) as f32
 }
 
 /// Sums over pairs, one per lane: the upper triangle of the point-to-plane equations row by row
 /// with their right side, then what distances between points add.
 struct Sums {
-    plane: [Lane; 27],
+    plane: [Vec4; 27],
     /// Weight, arm (3), products of arms (6), offset (3), arm × offset (3).
-    point: [Lane; 16],
+    point: [Vec4; 16],
 }
 
 impl Sums {
+    /// Adds the halves of a block: there are too many sums for the registers, so that each is loaded and stored for
+    /// both at once.
     #[inline(always)]
-    fn add(&mut self, pairs: &Pairs) {
-        let Pairs {
-            arm, off, normal, ..
-        } = pairs;
-        let cross = |a: &[Lane; 3], b: &[Lane; 3], i: usize, l: usize| {
-            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            a[j][l] * b[k][l] - a[k][l] * b[j][l]
-        };
-        let weight: Lane = std::array::from_fn(|l| pairs.nearness[l] * pairs.nearness[l]);
-        let row: [Lane; 7] = std::array::from_fn(|i| {
-            std::array::from_fn(|l| match i {
-                0..3 => cross(arm, normal, i, l),
-                3..6 => normal[i - 3][l],
-                _ => pairs.height[l],
-            })
-        });
+    fn add(&mut self, first: &Pairs, second: &Pairs) {
+        let (a, b) = (first.weight(), second.weight());
+        let (of_a, of_b) = (first.row(), second.row());
         let mut place = 0;
         for i in 0..6 {
-            let weighted: Lane = std::array::from_fn(|l| weight[l] * row[i][l]);
-            for other in &row[i..] {
-                for l in 0..LANES {
-                    self.plane[place][l] += weighted[l] * other[l];
-                }
+            let (a, b) = (a * of_a[i], b * of_b[i]);
+            for j in i..7 {
+                self.plane[place] += a * of_a[j] + b * of_b[j];
                 place += 1;
             }
         }
-        let mut place = 0;
-        let mut add = |values: Lane| {
-            for l in 0..LANES {
-                self.point[place][l] += weight[l] * values[l];
-            }
-            place += 1;
-        };
-        add([1.0; LANES]);
-        for values in arm {
-            add(*values);
-        }
-        for (i, j) in [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)] {
-            add(std::array::from_fn(|l| arm[i][l] * arm[j][l]));
-        }
-        for values in off {
-            add(*values);
-        }
-        for i in 0..3 {
-            add(std::array::from_fn(|l| cross(arm, off, i, l)));
+        self.point[0] += a + b;
+        let of_both = first.of_points().into_iter().zip(second.of_points());
+        for (sum, (of_a, of_b)) in self.point[1..].iter_mut().zip(of_both) {
+            *sum += a * of_a + b * of_b;
         }
     }
 
     /// The equations of the step: matrix and right side.
     fn equations(&self) -> (SMatrix<f64, 6, 6>, SVector<f64, 6>) {
-        let total = |lane: &Lane| lane.iter().map(|&x| f64::from(x)).sum::<f64>();
+        let total = |lanes: &Vec4| lanes.to_array().map(f64::from).iter().sum::<f64>();
         let (mut matrix, mut right) = (SMatrix::zeros(), SVector::zeros());
         let mut place = 0;
         for i in 0..6 {
@@ -209,11 +226,15 @@ pub(super) fn step(
     reach: Reach,
 ) -> Option<Motion32> {
     let mut sums = Sums {
-        plane: [[0.0; LANES]; 27],
-        point: [[0.0; LANES]; 16],
+        plane: [Vec4::ZERO; 27],
+        point: [Vec4::ZERO; 16],
     };
     for block in &cloud.blocks[..n_blocks] {
-        sums.add(&pair_up(block, grid, motion, sign, reach));
+        let [first, second] = &block.halves;
+        sums.add(
+            &pair_up(first, grid, motion, sign, reach),
+            &pair_up(second, grid, motion, sign, reach),
+        );
     }
     let (mut matrix, right) = sums.equations();
     let damping = DAMPING * matrix.trace() / 6.0;

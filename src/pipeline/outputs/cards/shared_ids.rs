@@ -78,11 +78,11 @@ impl SharedIds {
             .filter_map(|(kind, is_shared)| is_shared.then_some(kind))
             .collect();
         let (kinds, name) = (kinds.join(", "), stamped.file_name());
-        let what = format!("the crash deck has {kinds} with the ids of some in {name}");
+        let what = format!("the crash deck and {name} share ids ({kinds})");
         match self.offset {
             Some(offset) => format!("{what}; the include adds {offset} to the ids of these kinds"),
             None => format!(
-                "{what}, and no offset above its ids fits the card: renumber one of the files"
+                "{what}, and no offset above those of the crash deck fits the card: renumber one of the files"
             ),
         }
     }
