@@ -66,7 +66,15 @@ pub fn hand_by_borders(
     if result.missing > 0.0 && holes::can_place(context, found) {
         poses.extend(holes::mirrored_poses(context)?);
     }
-    let by_borders = comparison.by_borders(&poses)?;
+    let mut by_borders = comparison.by_borders(&poses)?;
+    // Poses that lie apart take the longest to move, and come no closer than those that lie on the part.
+    let near = by_borders.par_iter().copied();
+    let near: Vec<Similarity> = near
+        .filter(|pose| comparison.lies_on(pose, &result))
+        .collect();
+    if !near.is_empty() {
+        by_borders = near;
+    }
     let refine = |pose: &Similarity| comparison.refined(pose, Least::Any);
     let refined: Result<Vec<Option<Refined>>, Cancelled> =
         by_borders.par_iter().map(refine).collect();
