@@ -683,6 +683,7 @@ fn a_sheet_that_is_two_crash_parts_is_mapped_onto_both() {
     split += &format!(
         "*PART{}",
         part.replacen(&own.to_string(), &(own + 1).to_string(), 1)
+            .replacen("B-PILLAR", "C-PILLAR", 1)
     );
     split += &format!(
         "*NODE\n{}{}{}{}*PART\nFAR PLATE\n{:>10}\n*ELEMENT_SHELL\n{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}\n*END\n",
@@ -708,6 +709,13 @@ fn a_sheet_that_is_two_crash_parts_is_mapped_onto_both() {
         "{record}"
     );
     assert!(record["mapped_area"].as_f64().unwrap() > 0.99);
+    let car = ["map-car", "crash.k", "stamped.dynain", "--out", "mapped"];
+    let done = run(&[&car[..], &["--json", "-"]].concat());
+    let rows: Value = serde_json::from_slice(&done.stdout).unwrap();
+    assert_eq!(
+        rows["rows"][0]["title"],
+        "B-PILLAR REINFORCEMENT LH, C-PILLAR REINFORCEMENT LH"
+    );
 }
 
 fn node(id: u64, x: f64, y: f64) -> String {

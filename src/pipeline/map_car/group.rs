@@ -138,7 +138,7 @@ impl Group<'_> {
             _ => None,
         };
         Ok(Made {
-            title: first_title(&crash),
+            title: titles(&crash),
             given: (0..stamped.len())
                 .map(|at| Some(given[members.iter().position(|member| *member == at)?]))
                 .collect(),
@@ -246,9 +246,16 @@ impl Group<'_> {
     }
 }
 
-/// The title of the first of the chosen parts.
-fn first_title(crash: &LoadedPart) -> String {
+/// The titles of the chosen parts, each once.
+fn titles(crash: &LoadedPart) -> String {
     let ids = crash.chosen_part_ids();
-    let named = crash.model.parts.iter().find(|part| ids.contains(&part.id));
-    named.map_or_else(String::new, |part| part.title.clone())
+    let named = crash.model.parts.iter();
+    let named = named.filter(|part| ids.contains(&part.id) && !part.title.is_empty());
+    let mut titles: Vec<&str> = Vec::new();
+    for part in named {
+        if !titles.contains(&part.title.as_str()) {
+            titles.push(&part.title);
+        }
+    }
+    titles.join(", ")
 }

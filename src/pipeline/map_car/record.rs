@@ -157,7 +157,7 @@ pub struct CarRow {
     pub tools_left_out: Vec<u64>,
     /// Ids of the crash parts it belongs to.
     pub crash_parts: Vec<u64>,
-    /// Title of the first of them.
+    /// Their titles, each once.
     pub title: String,
     /// Rows of the 4×4 matrix of its pose.
     pub crash_from_stamped: Option<[[f64; 4]; 4]>,

@@ -2,7 +2,7 @@
 
 use glam::Vec4;
 
-use super::LANES;
+use super::{BLOCK, LANES};
 use crate::geometry::{Matrix3, Point3, Similarity, Vector3, z_order};
 use crate::registration::icp::orthonormal;
 use crate::registration::surface::Surface;
@@ -39,7 +39,7 @@ pub(super) fn area_samples(surface: &Surface, n: usize) -> Vec<(Point3, Vector3)
     samples
 }
 
-/// Samples of the data about their centroid, in grid units, in blocks of [`LANES`]. Every prefix is
+/// Samples of the data about their centroid, in grid units, in blocks of [`BLOCK`]. Every prefix is
 /// spread evenly over the surface.
 pub(super) struct Cloud {
     pub(super) blocks: Vec<Block>,
@@ -53,13 +53,13 @@ pub(super) struct Cloud {
     pub(super) is_mirrored: bool,
 }
 
-/// Points and normals of [`LANES`] samples in two halves, which are worked on side by side.
+/// Points and normals of [`BLOCK`] samples.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Block {
     pub(super) halves: [HalfBlock; 2],
 }
 
-/// Four samples, coordinate by coordinate.
+/// [`LANES`] samples, coordinate by coordinate.
 #[derive(Clone, Copy, Default)]
 pub(super) struct HalfBlock {
     pub(super) point: [Vec4; 3],
@@ -68,7 +68,7 @@ pub(super) struct HalfBlock {
 
 impl Block {
     fn set(&mut self, sample: usize, point: [f32; 3], normal: [f32; 3]) {
-        let (half, lane) = (&mut self.halves[sample / 4], sample % 4);
+        let (half, lane) = (&mut self.halves[sample / LANES], sample % LANES);
         for k in 0..3 {
             half.point[k][lane] = point[k];
             half.normal[k][lane] = normal[k];
@@ -76,29 +76,31 @@ impl Block {
     }
 
     pub(super) fn point(&self, sample: usize) -> [f32; 3] {
-        self.halves[sample / 4].point.map(|x| x[sample % 4])
+        self.halves[sample / LANES].point.map(|x| x[sample % LANES])
     }
 
     pub(super) fn normal(&self, sample: usize) -> [f32; 3] {
-        self.halves[sample / 4].normal.map(|x| x[sample % 4])
+        self.halves[sample / LANES]
+            .normal
+            .map(|x| x[sample % LANES])
     }
 }
 
 impl Cloud {
     /// About `n` samples of `surface` at the scale of a grid.
     pub(super) fn new(surface: &Surface, n: usize, scale: f64) -> Self {
-        let n = n.next_multiple_of(LANES);
+        let n = n.next_multiple_of(BLOCK);
         let samples = area_samples(surface, n);
         let points: Vec<Point3> = samples.iter().map(|(point, _)| *point).collect();
         let sum: Vector3 = points.iter().map(|point| point.coords).sum();
         let center = Point3::from(sum / points.len().max(1) as f64);
         let order = z_order(&points);
-        let mut blocks = vec![Block::default(); samples.len() / LANES];
-        for (place, rank) in bit_reversed(blocks.len() * LANES).into_iter().enumerate() {
+        let mut blocks = vec![Block::default(); samples.len() / BLOCK];
+        for (place, rank) in bit_reversed(blocks.len() * BLOCK).into_iter().enumerate() {
             let (point, normal) = &samples[order[rank] as usize];
             let local = (point - center) * scale;
             let [point, normal] = [local, *normal].map(|v| v.cast::<f32>().into());
-            blocks[place / LANES].set(place % LANES, point, normal);
+            blocks[place / BLOCK].set(place % BLOCK, point, normal);
         }
         Self {
             blocks,
@@ -126,7 +128,7 @@ impl Cloud {
     /// Its points, block by block.
     pub(super) fn points(&self) -> impl Iterator<Item = Vector3> + '_ {
         let blocks = self.blocks.iter();
-        let points = blocks.flat_map(|block| (0..LANES).map(|sample| block.point(sample)));
+        let points = blocks.flat_map(|block| (0..BLOCK).map(|sample| block.point(sample)));
         points.map(|point| Vector3::from(point.map(f64::from)))
     }
 
@@ -134,7 +136,7 @@ impl Cloud {
     pub(super) fn piece(&self, around: &Vector3, share: f64) -> Self {
         let points: Vec<Vector3> = self.points().collect();
         let n = (share * points.len() as f64) as usize;
-        let n = n.next_multiple_of(LANES).min(points.len());
+        let n = n.next_multiple_of(BLOCK).min(points.len());
         let away = |i: usize| (points[i] - around).norm_squared();
         let mut near: Vec<usize> = (0..points.len()).collect();
         near.sort_unstable_by(|&a, &b| away(a).total_cmp(&away(b)).then(a.cmp(&b)));
@@ -143,12 +145,12 @@ impl Cloud {
         near.sort_unstable();
         let middle = near.iter().map(|&i| points[i]).sum::<Vector3>() / n.max(1) as f64;
         let (mut low, mut high) = (Vector3::zeros(), Vector3::zeros());
-        let mut blocks = vec![Block::default(); n / LANES];
+        let mut blocks = vec![Block::default(); n / BLOCK];
         for (place, &i) in near.iter().enumerate() {
             let local = points[i] - middle;
             (low, high) = (low.inf(&local), high.sup(&local));
-            let normal = self.blocks[i / LANES].normal(i % LANES);
-            blocks[place / LANES].set(place % LANES, local.cast::<f32>().into(), normal);
+            let normal = self.blocks[i / BLOCK].normal(i % BLOCK);
+            blocks[place / BLOCK].set(place % BLOCK, local.cast::<f32>().into(), normal);
         }
         let data_from_local = self.local_from_data().inverse();
         Self {

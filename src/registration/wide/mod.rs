@@ -26,8 +26,10 @@ use holes::Holes;
 use rounds::{Ground, Round};
 use seeds::SeedCounts;
 
+/// Samples that are worked on side by side.
+const LANES: usize = 4;
 /// Samples of a block.
-const LANES: usize = 8;
+const BLOCK: usize = 2 * LANES;
 /// Samples of the larger part in its grid.
 const N_GRID_SAMPLES: usize = 30_000;
 /// Samples of the smaller part.

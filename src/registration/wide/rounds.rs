@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::LANES;
+use super::BLOCK;
 use super::cloud::{Cloud, Motion32};
 use super::step::{Reach, loss, step};
 use crate::monitor::{Cancelled, Monitor};
@@ -97,7 +97,7 @@ pub(super) fn run(
 
 fn advance(candidate: &mut Candidate, ground: Ground<'_>, round: &Round) {
     let Ground { cloud, grid, reach } = ground;
-    let n_blocks = round.n_points.div_ceil(LANES).min(cloud.blocks.len());
+    let n_blocks = round.n_points.div_ceil(BLOCK).min(cloud.blocks.len());
     let sign = if candidate.flipped { -1.0 } else { 1.0 };
     let reach = Reach {
         cut: round.cut * reach,

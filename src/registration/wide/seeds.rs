@@ -2,7 +2,7 @@
 
 use nalgebra::SymmetricEigen;
 
-use super::LANES;
+use super::BLOCK;
 use super::cloud::{Cloud, Motion32};
 use super::rounds::First;
 use crate::geometry::{Matrix3, Rotation, Vector3};
@@ -147,7 +147,7 @@ struct Scene {
 impl Scene {
     fn new(cloud: &Cloud, grid: &FeatureGrid) -> Self {
         let blocks = cloud.blocks.iter();
-        let normals = blocks.flat_map(|block| (0..LANES).map(|l| local(block.normal(l))));
+        let normals = blocks.flat_map(|block| (0..BLOCK).map(|l| local(block.normal(l))));
         let data: Vec<Sample> = cloud.points().zip(normals).collect();
         let step = grid.features().len().div_ceil(N_MODEL_SAMPLES);
         let model = grid.features().iter().step_by(step);

@@ -5,7 +5,7 @@
 use glam::{Mat4, Vec3A, Vec4};
 use nalgebra::{Cholesky, Rotation3, SMatrix, SVector};
 
-use super::LANES;
+use super::BLOCK;
 use super::cloud::{Cloud, HalfBlock, Motion32};
 use crate::geometry::{Matrix3, Vector3};
 use crate::search::FeatureGrid;
@@ -143,7 +143,7 @@ pub(super) fn loss(
             kept += nearness * nearness * nearness;
         }
     }
-    1.0 - kept.element_sum() / (n_blocks * LANES) as f32
+    1.0 - kept.element_sum() / (n_blocks * BLOCK) as f32
 }
 
 /// Sums over pairs, one per lane: the upper triangle of the point-to-plane equations row by row
