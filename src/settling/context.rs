@@ -13,6 +13,9 @@ use crate::geometry::{Point3, Similarity};
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::Surface;
 
+/// Borders that are kept prepared. Steps ask for three reaches; where the scale is free, every pose has its own.
+const MOST_PREPARED: usize = 8;
+
 /// Two parts whose pose is chosen.
 pub struct PairContext<'a> {
     pub(super) source: &'a Surface,
@@ -28,7 +31,7 @@ pub struct PairContext<'a> {
     pub(super) borders_of_families: [OnceLock<Option<FamilyBorders>>; 2],
     /// The statements made so far, by pose: several steps ask about the same one.
     shapes: Mutex<Vec<(Similarity, ShapeStatement)>>,
-    /// The borders prepared so far, by scale and reach.
+    /// The borders prepared last, by scale and reach.
     borders: Mutex<Vec<([f64; 2], Arc<BorderComparison<'a>>)>>,
 }
 
@@ -80,26 +83,22 @@ impl<'a> PairContext<'a> {
     /// The borders of both, looked for within `reach`, prepared when first asked for.
     pub(super) fn borders(&self, scale: f64, reach: f64) -> Arc<BorderComparison<'a>> {
         let key = [scale, reach];
-        let known = lock(&self.borders)
-            .iter()
-            .find(|(of, _)| *of == key)
-            .cloned();
-        if let Some((_, borders)) = known {
+        if let Some(borders) = known(&self.borders, &key) {
             return borders;
         }
         // Two steps at once may both prepare them: a lock held meanwhile could wait for its own thread.
         let borders = Arc::new(BorderComparison::new(self.surfaces(), scale, reach));
-        lock(&self.borders).push((key, Arc::clone(&borders)));
+        let mut prepared = lock(&self.borders);
+        if prepared.len() == MOST_PREPARED {
+            prepared.remove(0);
+        }
+        prepared.push((key, Arc::clone(&borders)));
         borders
     }
 
     /// The statement about the shape under a pose, made when first asked for.
     pub(super) fn shape(&self, pose: &Similarity) -> ShapeStatement {
-        let known = lock(&self.shapes)
-            .iter()
-            .find(|(of, _)| of == pose)
-            .cloned();
-        if let Some((_, shape)) = known {
+        if let Some(shape) = known(&self.shapes, pose) {
             return shape;
         }
         let shape = self.statement(pose, Outlines::Compared);
@@ -141,6 +140,13 @@ impl<'a> PairContext<'a> {
         }
         Ok(pose)
     }
+}
+
+/// What was found for a key.
+fn known<K: PartialEq, T: Clone>(found: &Mutex<Vec<(K, T)>>, key: &K) -> Option<T> {
+    let found = lock(found);
+    let known = found.iter().find(|(of, _)| of == key);
+    known.map(|(_, known)| known.clone())
 }
 
 /// What was found so far; each entry is whole, even if a thread that added one panicked.
