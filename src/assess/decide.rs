@@ -33,6 +33,8 @@ const SEVERAL_TO: f64 = 500.0;
 pub(super) const LEAST_TOGETHER: f64 = 1.0 / 3.0;
 /// Of the outlines across its free motion at least this share must: one end of a part can always be brought together.
 const LEAST_ACROSS: f64 = 2.0 / 3.0;
+/// Beside a hole that has its counterpart so much is enough: that it lies together with an end is no chance.
+const LEAST_ACROSS_BESIDE_HOLE: f64 = 0.1;
 /// Parts whose sizes differ by more than this factor are not in one unit, whatever the units are.
 const FAR_APART: f64 = 50.0;
 
@@ -85,11 +87,13 @@ pub(super) fn decide(assessment: &mut Assessment, grounds: &Grounds<'_>) {
     ];
     let hand = hand(assessment, shape, mirrored);
     let is_open = hand.is_some() || of_pose.iter().any(Option::is_some);
-    let is_one = !is_open && is_held(assessment) && shares_a_piece(shape);
+    let is_held = is_held(assessment);
+    let is_held_by_holes = is_firm(assessment) && is_held_by_holes(&shape.borders);
+    let is_one = !is_open && is_held && shares_a_piece(shape);
     let of_shape = [
         hand,
         scale(assessment, most_scaled),
-        overlap(&assessment.coverage, shape, is_held(assessment)),
+        overlap(&assessment.coverage, shape, is_held || is_held_by_holes),
         elsewhere(shape),
     ];
     let found = of_pose.into_iter().chain(of_shape).chain([read]).flatten();
@@ -254,8 +258,17 @@ fn scale(assessment: &Assessment, most: f64) -> Option<Reason> {
 
 /// Whether the surfaces alone hold the part, within its tolerance.
 fn is_held(assessment: &Assessment) -> bool {
-    let is_firm = assessment.pose.as_ref().is_some_and(PoseStatement::is_firm);
-    is_firm && assessment.freedom.motion.is_none()
+    is_firm(assessment) && assessment.freedom.motion.is_none()
+}
+
+/// Whether the pose is certain within its tolerance.
+fn is_firm(assessment: &Assessment) -> bool {
+    assessment.pose.as_ref().is_some_and(PoseStatement::is_firm)
+}
+
+/// Whether holes hold the part, and none speaks against its pose.
+fn is_held_by_holes(borders: &BorderFit) -> bool {
+    borders.n_holes >= HOLES_THAT_HOLD && borders.n_alone() == 0
 }
 
 /// Whether all that speaks against one shape is that little of the parts meets, while the rest of the smaller one lies
@@ -267,8 +280,8 @@ fn shares_a_piece(shape: &ShapeStatement) -> bool {
 }
 
 /// Parts of which each has a large piece that the other lacks, unless the surface they share is one and holds the
-/// pose by itself, and the rest of the smaller part lies beyond the borders of the other. Where one lies on the other
-/// and much of it without a counterpart, normals differ.
+/// pose by itself or with its holes, and the rest of the smaller part lies beyond the borders of the other. Where one
+/// lies on the other and much of it without a counterpart, normals differ.
 fn overlap(coverage: &Coverage, shape: &ShapeStatement, is_held: bool) -> Option<Reason> {
     let overhangs = shape.overhang;
     let only_overhangs = overhangs.is_some_and(|share| only_overhangs(shape.met, share));
@@ -307,19 +320,28 @@ fn elsewhere(shape: &ShapeStatement) -> Option<Reason> {
 fn sliding(assessment: &Assessment, grounds: &Grounds<'_>) -> Option<Reason> {
     let Grounds { outcome, shape, .. } = *grounds;
     let motion = assessment.freedom.motion?;
-    let is_firm = assessment.pose.as_ref().is_some_and(PoseStatement::is_firm);
     let was_searched = outcome.rivals_sought && motion.kind.is_searched();
     let is_clear = was_searched && assessment.ambiguity.clarity == Clarity::Clear;
     let borders = &shape.borders;
-    let is_held_across = grounds.held_across.is_none_or(|held| held >= LEAST_ACROSS);
+    let least = least_across(borders);
+    let is_held_across = grounds.held_across.is_none_or(|held| held >= least);
     let borders_hold =
         is_clear && is_held_across && borders_lie_together(borders, &shape.tolerance);
-    let is_held = is_firm && (borders.n_holes >= HOLES_THAT_HOLD || borders_hold);
+    let is_held = is_firm(assessment) && (borders.n_holes >= HOLES_THAT_HOLD || borders_hold);
     let held_across = grounds.held_across.filter(|_| !is_held_across);
     (!is_held).then_some(Reason::Sliding {
         motion,
         held_across,
     })
+}
+
+/// Share of the outlines across a free motion that hold the part.
+fn least_across(borders: &BorderFit) -> f64 {
+    if borders.n_holes > 0 && borders.n_alone() == 0 {
+        LEAST_ACROSS_BESIDE_HOLE
+    } else {
+        LEAST_ACROSS
+    }
 }
 
 /// Whether borders that lie beside each other do so where they belong, and enough of them: along a free motion some
@@ -430,6 +452,22 @@ mod tests {
         // Edges that were trimmed lie beside each other by chance, but hardly along a third of the outline.
         assert!(!holds(Some(0.9), 0.3));
         assert!(!holds(Some(1.1), 0.9) && !holds(None, 0.9));
+    }
+
+    #[test]
+    fn an_end_and_a_hole_hold_a_part_and_one_of_them_does_not() {
+        let holds_with = |n_holes, only_target, across| {
+            let borders = BorderFit {
+                n_holes,
+                only_target,
+                ..BorderFit::default()
+            };
+            across >= least_across(&borders)
+        };
+        assert!(holds_with(1, 0, 0.14) && !holds_with(1, 0, 0.05));
+        // The end alone, or beside a hole that lies where the other part is solid.
+        assert!(!holds_with(0, 0, 0.5) && !holds_with(1, 1, 0.5));
+        assert!(holds_with(0, 0, 0.7));
     }
 
     #[test]

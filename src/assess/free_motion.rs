@@ -4,10 +4,10 @@ use nalgebra::{Const, SMatrix, SymmetricEigen};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::contact::{ContactSearch, FEW_NODES};
+use super::contact::{ContactSearch, Contacts, FEW_NODES};
 use super::small_motion::{self, Six, turn_and_shift};
 use crate::geometry::serial::{any_float, xyz};
-use crate::geometry::{Matrix3, Point3, Rotation, Similarity, Vector3};
+use crate::geometry::{Matrix3, Point3, Rotation, Similarity, Vector3, z_order};
 use crate::registration::Surface;
 use crate::search::ClosestPoint;
 
@@ -15,6 +15,13 @@ use crate::search::ClosestPoint;
 /// Shapes that are exactly flat, cylindrical or extruded measure below 1e-5 on real meshes, an
 /// extrusion with one shallow bead above 1e-3.
 const FREE_BELOW: f64 = 1e-4;
+/// Facets that cut across a fold are tilted at random, and resist a slide along the fold that nothing holds. What
+/// resists one is tilted alike at places beside each other: each is compared with so many others.
+const N_BESIDE: usize = 3;
+/// Where they agree on less than this share of the resistance, facets do resist.
+const BY_FACETS: f64 = 0.5;
+/// The weakest motion is free then, and what meets hardly more resistance.
+const FACETS_MORE: f64 = 1.2;
 /// A motion is weak if it meets less than this fraction.
 const WEAK_BELOW: f64 = 3e-3;
 
@@ -113,16 +120,28 @@ pub struct Freedom {
 }
 
 /// Finds the motions that slide the overlap on itself (Gelfand et al. 2003): the small eigenvalues
-/// of Σ a aᵀ with a = ((x − c) × n, n) over source nodes within `limit` of the target. There are none
-/// where the surfaces come apart when the part is moved along the weakest.
+/// of Σ a aᵀ with a = ((x − c) × n, n) over source nodes within `limit` of the target. Where facets resist the weakest
+/// motion at random, what places beside each other agree on counts. There are none where the surfaces come apart when
+/// the part is moved along the weakest.
 pub fn free_motions(
     source: &Surface,
     target: &Surface,
     target_from_source: &Similarity,
     limit: f64,
 ) -> Freedom {
-    let found = motions_below(FREE_BELOW, source, target, target_from_source, limit);
-    if found.motion.is_some() && comes_apart([source, target], target_from_source, limit) {
+    let pair = [source, target];
+    let Some(resistance) = Resistance::of(source, target, target_from_source, limit) else {
+        return Freedom::ALL;
+    };
+    let is_by_facets = resistance.is_by_facets();
+    let below = if is_by_facets {
+        FREE_BELOW.max(FACETS_MORE * resistance.weakest_share())
+    } else {
+        FREE_BELOW
+    };
+    let found = resistance.below(below);
+    let is_apart = || resistance.comes_apart(pair, target_from_source, limit, is_by_facets);
+    if found.motion.is_some() && is_apart() {
         return Freedom {
             motion: None,
             n_free: 0,
@@ -132,32 +151,11 @@ pub fn free_motions(
     found
 }
 
-/// Whether the surfaces come apart, to both sides, when the source is moved along the motion that they resist least.
-fn comes_apart(pair: [&Surface; 2], pose: &Similarity, limit: f64) -> bool {
-    let [source, target] = pair;
-    let Some(resistance) = Resistance::of(source, target, pose, limit) else {
-        return false;
-    };
-    let mut search = ContactSearch::new(pair, pose.scale, limit, FEW_NODES);
-    let mut apart = |by: f64| {
-        let moved = resistance.along_weakest(by * resistance.radius);
-        search.at(&moved.after(pose)).map(|contacts| {
-            let gaps = contacts.list.iter().map(|contact| contact.gap);
-            let facets = contacts.list.iter().map(|contact| contact.facet);
-            let gaps: Vec<f64> = gaps.collect();
-            let middle = median(gaps.clone());
-            let off = median(gaps.iter().map(|gap| (gap - middle).abs()).collect());
-            (off, median(facets.collect()))
-        })
-    };
-    let Some((now, facet)) = apart(0.0) else {
-        return false;
-    };
-    let nothing = now.max(facet).max(NOTHING * resistance.radius);
-    [1.0, -1.0].into_iter().all(|side| {
-        let [near, far] = MOVED_BY.map(|by| apart(side * by).map_or(0.0, |(off, _)| off));
-        far >= APART * nothing && far >= FARTHER * near
-    })
+/// How far surfaces lie apart, without a constant distance of the sheets.
+fn off(contacts: &Contacts) -> f64 {
+    let gaps: Vec<f64> = contacts.list.iter().map(|contact| contact.gap).collect();
+    let middle = median(gaps.clone());
+    median(gaps.iter().map(|gap| (gap - middle).abs()).collect())
 }
 
 /// 0 of none.
@@ -176,7 +174,8 @@ pub(crate) fn weak_motion(
     target_from_source: &Similarity,
     limit: f64,
 ) -> Option<FreeMotion> {
-    motions_below(WEAK_BELOW, source, target, target_from_source, limit).motion
+    let resistance = Resistance::of(source, target, target_from_source, limit)?;
+    resistance.below(WEAK_BELOW).motion
 }
 
 /// The one motion that the overlap resists least, as a shift or a turn, where that is no more than a profile resists
@@ -206,41 +205,18 @@ pub(crate) fn weakest_motion(
     })
 }
 
-/// The motions that meet less than this fraction of the resistance of the stiffest one.
-fn motions_below(
-    below: f64,
-    source: &Surface,
-    target: &Surface,
-    target_from_source: &Similarity,
-    limit: f64,
-) -> Freedom {
-    let Some(resistance) = Resistance::of(source, target, target_from_source, limit) else {
-        return Freedom {
-            motion: None,
-            n_free: 6,
-            weakest: 0.0,
-        };
+impl Freedom {
+    /// Nothing resists.
+    const ALL: Self = Self {
+        motion: None,
+        n_free: 6,
+        weakest: 0.0,
     };
-    let Resistance {
-        eigen,
-        normals,
-        center,
-        radius,
-    } = resistance;
-    let stiffest = eigen.eigenvalues.max();
-    let free: Vec<Six> = (0..6)
-        .filter(|&k| eigen.eigenvalues[k] < below * stiffest)
-        .map(|k| eigen.eigenvectors.column(k).into())
-        .collect();
-    Freedom {
-        motion: classify(&free, &normals, below * stiffest, center, radius),
-        n_free: free.len(),
-        weakest: (eigen.eigenvalues.min() / stiffest).max(0.0),
-    }
 }
 
 /// What the overlap resists: Σ a aᵀ and Σ n nᵀ over its points.
 struct Resistance {
+    held: Vec<Held>,
     eigen: SymmetricEigen<f64, Const<6>>,
     normals: Matrix3,
     /// Centroid of the points and their mean distance from it.
@@ -278,11 +254,97 @@ impl Resistance {
         }
         let eigen = SymmetricEigen::new(matrix);
         (eigen.eigenvalues.max() > 0.0).then_some(Self {
+            held,
             eigen,
             normals,
             center,
             radius,
         })
+    }
+
+    /// Resistance of the weakest motion relative to the stiffest.
+    fn weakest_share(&self) -> f64 {
+        let eigenvalues = &self.eigen.eigenvalues;
+        (eigenvalues.min() / eigenvalues.max()).max(0.0)
+    }
+
+    /// The motions that meet less than this fraction of the resistance of the stiffest one.
+    fn below(&self, below: f64) -> Freedom {
+        let eigen = &self.eigen;
+        let below = below * eigen.eigenvalues.max();
+        let free: Vec<Six> = (0..6)
+            .filter(|&k| eigen.eigenvalues[k] < below)
+            .map(|k| eigen.eigenvectors.column(k).into())
+            .collect();
+        Freedom {
+            motion: classify(&free, &self.normals, below, self.center, self.radius),
+            n_free: free.len(),
+            weakest: self.weakest_share(),
+        }
+    }
+
+    /// Whether only facets resist the weakest motion: places beside each other do not agree on what does.
+    fn is_by_facets(&self) -> bool {
+        let weakest = self.weakest_share();
+        let most = FREE_BELOW.min(BY_FACETS * weakest);
+        weakest < WEAKEST_BELOW && self.agreed() < most * self.eigen.eigenvalues.max()
+    }
+
+    /// Whether the surfaces come apart, to both sides, when the source is moved along the motion that they resist
+    /// least; by more than the facets lie apart where only these resist it.
+    fn comes_apart(
+        &self,
+        pair: [&Surface; 2],
+        pose: &Similarity,
+        limit: f64,
+        is_by_facets: bool,
+    ) -> bool {
+        let mut search = ContactSearch::new(pair, pose.scale, limit, FEW_NODES);
+        let mut under = |by: f64| {
+            let moved = self.along_weakest(by * self.radius);
+            search.at(&moved.after(pose))
+        };
+        let Some(now) = under(0.0) else {
+            return false;
+        };
+        let facets = if is_by_facets {
+            now.typical_gap(0.0)
+        } else {
+            median(now.list.iter().map(|contact| contact.facet).collect())
+        };
+        let nothing = off(&now).max(facets).max(NOTHING * self.radius);
+        [1.0, -1.0].into_iter().all(|side| {
+            let [near, far] = MOVED_BY.map(|by| under(side * by).as_ref().map_or(0.0, off));
+            far >= APART * nothing && far >= FARTHER * near
+        })
+    }
+
+    /// What of the resistance to the weakest motion places beside each other agree on: instead of the squares of what
+    /// each meets the products with what the next ones along a curve through all places meet. O(n log n).
+    fn agreed(&self) -> f64 {
+        let weakest = self
+            .eigen
+            .eigenvectors
+            .column(self.eigen.eigenvalues.imin());
+        let points: Vec<Point3> = self.held.iter().map(|(point, ..)| *point).collect();
+        let order = z_order(&points);
+        let meets = |place: u32| {
+            let (point, normal, weight) = &self.held[place as usize];
+            let row = small_motion::row(&((point - self.center) / self.radius), normal);
+            (row.dot(&weakest), *weight)
+        };
+        let met: Vec<(f64, f64)> = order.into_iter().map(meets).collect();
+        let beside = (1..=N_BESIDE).flat_map(|lag| met.iter().zip(met.iter().skip(lag)));
+        let (sum, weights) = beside.fold((0.0, 0.0), |(sum, weights), (a, b)| {
+            let weight = (a.1 * b.1).sqrt();
+            (sum + a.0 * b.0 * weight, weights + weight)
+        });
+        if weights > 0.0 {
+            let total: f64 = met.iter().map(|(_, weight)| weight).sum();
+            sum / weights * total
+        } else {
+            f64::INFINITY
+        }
     }
 
     /// The motion that meets the least resistance: its turn, lengths scaled by the radius, its shift at the centroid,
@@ -309,13 +371,16 @@ impl Resistance {
     }
 }
 
-/// Points of the overlap in the target's frame with the target's normals and areas.
+/// A point of the overlap in the target's frame, with the target's normal and the area it stands for.
+type Held = (Point3, Vector3, f64);
+
+/// Points of the overlap.
 fn held_points(
     source: &Surface,
     target: &Surface,
     target_from_source: &Similarity,
     limit: f64,
-) -> Vec<(Point3, Vector3, f64)> {
+) -> Vec<Held> {
     let n = source.mesh().n_vertices();
     let stride = n.div_ceil(MAX_NODES).max(1);
     (0..n.div_ceil(stride))

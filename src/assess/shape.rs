@@ -83,6 +83,13 @@ pub struct BorderFit {
     pub only_target: usize,
 }
 
+impl BorderFit {
+    /// Holes of one part where the other is solid.
+    pub(crate) fn n_alone(&self) -> usize {
+        self.only_source + self.only_target
+    }
+}
+
 /// What speaks against one shape. Lengths in target units, places in the target's frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", tag = "what")]

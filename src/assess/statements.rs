@@ -18,6 +18,9 @@ use crate::registration::{MatchOutcome, Surface};
 const LEFT: f64 = 0.1;
 /// Outlines lie together if this share of those beside others does.
 const ALL_TOGETHER: f64 = 0.9;
+/// Trims that lie anywhere within the tolerance are off by this share of it, root mean square; where some lie beyond
+/// it, the others count in full.
+const TRIMS_OFF: f64 = 0.577;
 /// Outlines of which no more runs across a motion do not resist it.
 const HARDLY_ACROSS: f64 = 0.02;
 
@@ -185,10 +188,10 @@ impl<'a> Met<'a> {
             self.evidence.borders = self.evidence.borders.of_holes();
             self.fit = Fit::of(&self.evidence);
         }
-        let other_trims = if self.is_held_by_trims(tolerance) {
-            tolerance.remainder
-        } else {
-            0.0
+        let other_trims = match self.other_trim {
+            _ if !self.is_held_by_trims(tolerance) => 0.0,
+            Some(_) => tolerance.remainder,
+            None => TRIMS_OFF * tolerance.remainder,
         };
         PoseUncertainty::of(&self.evidence, &self.fit, settings.thickness, other_trims)
     }
@@ -303,5 +306,16 @@ mod tests {
             let by_trims = (with * with - without * without).sqrt();
             assert!((0.5..3.0).contains(&by_trims), "{without} {with}");
         }
+    }
+
+    #[test]
+    fn trims_within_the_tolerance_leave_their_root_mean_square_open() {
+        let pair = [&plate([0.8, 0.0]), &plate([0.0; 2])];
+        let settings = AssessSettings::default();
+        let pose = Similarity::identity();
+        let found = statements(pair, &pose, Asked::default(), &settings);
+        let largest = found.uncertainty.unwrap().largest;
+        let share = largest / found.shape.tolerance.remainder;
+        assert!((0.5..1.0).contains(&share), "{share}");
     }
 }

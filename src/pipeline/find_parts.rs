@@ -15,7 +15,7 @@ use super::likeness::{AS_ALIKE, Moments, Signature, joined_signatures, moments_o
 use super::load::{LoadedPart, prepare};
 use super::match_parts::{MatchRecipe, MatchRun, match_parts};
 use super::{PipelineError, millis_since};
-use crate::assess::{Ambiguity, Verdict};
+use crate::assess::{Ambiguity, BorderFit, Verdict};
 use crate::formats::Selection;
 use crate::geometry::Similarity;
 use crate::geometry::chunks::for_chunks;
@@ -260,7 +260,7 @@ impl Found {
             is_one_shape: verdict != Verdict::Poor
                 && shape.is_some_and(|shape| shape.reasons.is_empty()),
             covered: stamped * crash,
-            n_holes_apart: borders.map_or(0, |borders| borders.only_source + borders.only_target),
+            n_holes_apart: borders.map_or(0, BorderFit::n_alone),
             rmse: assessment.coverage.rmse(),
             unremarkable: shape.map_or(0.0, |shape| shape.tolerance.unremarkable()),
             apart: shape.map_or(f64::INFINITY, |shape| {

@@ -191,7 +191,7 @@ impl Candidate {
             n_differences: n_clear + n_that_say(Evidence::Difference),
             n_clear,
             n_holes: borders.n_holes,
-            n_alone: borders.only_source + borders.only_target,
+            n_alone: borders.n_alone(),
             outlines_are_no_evidence: borders.other_trim.is_some() || borders.offset.is_none(),
             is_one_shape: shape.reasons.is_empty(),
             offset: shape.offset.unwrap_or(0.0),

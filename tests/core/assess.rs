@@ -96,6 +96,40 @@ fn a_smooth_panel_that_comes_apart_where_it_is_moved_does_not_slide() {
     assert!(bent.motion.is_some(), "{bent:?}");
 }
 
+/// A hat profile along x, whose elements cut across its folds at random, with a bead as high as given.
+fn hat_with_cut_folds(n: u32, bead: f64) -> Surface {
+    let random = |seed: f64| 0.5 * (seed.sin() * 43_758.545).fract();
+    let mesh = sheet(n, |u, v| {
+        let is_inside = |t: f64| (0.01..0.99).contains(&t);
+        let moved = |t: f64, seed: f64| {
+            let step = if is_inside(t) { random(seed) } else { 0.0 };
+            t + 0.8 * step / f64::from(n) - 0.5
+        };
+        let along = 500.0 * moved(u, 12.9 * u + 78.2 * v);
+        let across = 300.0 * moved(v, 63.7 * u + 10.9 * v);
+        let height = (90.0 - across.abs()).clamp(0.0, 40.0);
+        let away = (along - 60.0).hypot(across) / 60.0;
+        let top = height + bead * (1.0 - away * away).max(0.0).powi(2);
+        Point3::new(along, across, top)
+    });
+    Surface::new(&mesh, "target").unwrap()
+}
+
+#[test]
+fn facets_that_cut_across_folds_do_not_hold_a_profile_along_itself() {
+    let freedom = |bead| {
+        let pair = [24, 31].map(|n| hat_with_cut_folds(n, bead));
+        free_motions(&pair[0], &pair[1], &Similarity::identity(), 5.0)
+    };
+    let plain = freedom(0.0);
+    assert!(plain.weakest > 1e-4, "{plain:?}");
+    let motion = plain.motion.unwrap();
+    assert_eq!(motion.kind, FreeMotionKind::Extruded);
+    assert!(motion.direction.x > 0.99, "{motion:?}");
+    let beaded = freedom(12.0);
+    assert_eq!(beaded.motion, None, "{beaded:?}");
+}
+
 /// The usual match of two full meshes.
 pub fn matched(source: &Surface, target: &Surface) -> MatchOutcome {
     let input = MatchInput {
