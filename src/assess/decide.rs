@@ -33,7 +33,7 @@ const SEVERAL_TO: f64 = 500.0;
 pub(super) const LEAST_TOGETHER: f64 = 1.0 / 3.0;
 /// Of the outlines across its free motion at least this share must: one end of a part can always be brought together.
 const LEAST_ACROSS: f64 = 2.0 / 3.0;
-/// Beside a hole that has its counterpart so much is enough: that it lies together with an end is no chance.
+/// Beside a hole that has its counterpart this share is enough: an end and a hole hardly ever lie together by chance.
 const LEAST_ACROSS_BESIDE_HOLE: f64 = 0.1;
 /// Parts whose sizes differ by more than this factor are not in one unit, whatever the units are.
 const FAR_APART: f64 = 50.0;

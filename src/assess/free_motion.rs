@@ -18,9 +18,9 @@ const FREE_BELOW: f64 = 1e-4;
 /// Facets that cut across a fold are tilted at random, and resist a slide along the fold that nothing holds. What
 /// resists one is tilted alike at places beside each other: each is compared with so many others.
 const N_BESIDE: usize = 3;
-/// Where they agree on less than this share of the resistance, facets do resist.
+/// Only facets resist a motion where such places agree on less than this share of the resistance.
 const BY_FACETS: f64 = 0.5;
-/// The weakest motion is free then, and what meets hardly more resistance.
+/// The weakest motion is free then, and so is any that meets up to so many times its resistance.
 const FACETS_MORE: f64 = 1.2;
 /// A motion is weak if it meets less than this fraction.
 const WEAK_BELOW: f64 = 3e-3;

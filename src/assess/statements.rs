@@ -18,8 +18,8 @@ use crate::registration::{MatchOutcome, Surface};
 const LEFT: f64 = 0.1;
 /// Outlines lie together if this share of those beside others does.
 const ALL_TOGETHER: f64 = 0.9;
-/// Trims that lie anywhere within the tolerance are off by this share of it, root mean square; where some lie beyond
-/// it, the others count in full.
+/// Trims that may lie anywhere within the tolerance are off by this share of it, root mean square (1/√3). Where some
+/// lie beyond it, the tolerance counts in full.
 const TRIMS_OFF: f64 = 0.577;
 /// Outlines of which no more runs across a motion do not resist it.
 const HARDLY_ACROSS: f64 = 0.02;
