@@ -3,6 +3,8 @@
 
 mod displaced;
 
+use std::sync::Arc;
+
 use rayon::iter::Either;
 use rayon::prelude::*;
 
@@ -11,13 +13,13 @@ use super::scaled::Scaled;
 use super::small_motion::{self, Six, turn_and_shift};
 use super::tolerance::is_source_smaller;
 use crate::geometry::{Point3, Rotation, Similarity, Vector3};
-use crate::registration::{Motion, Surface, fit_pairs};
+use crate::registration::{Motion, Surface, WeightedNode, fit_pairs};
 use crate::search::{ClosestPoint, SurfaceHit};
 
 /// Nodes of the smaller part that are looked at; more change no figure by a percent.
-pub(crate) const MAX_NODES: usize = 8000;
+pub(crate) const MAX_NODES: usize = 6000;
 /// Nodes of the smaller part that poses are compared on.
-pub(crate) const FEW_NODES: usize = 2000;
+pub(crate) const FEW_NODES: usize = 1500;
 /// Differences of the surfaces are stated at this share of the area: what lies farther apart at few places is looked
 /// for by itself.
 pub(crate) const STATED_SHARE: f64 = 0.95;
@@ -49,9 +51,7 @@ pub(super) struct Contact {
 pub(crate) struct Contacts {
     pub(super) list: Vec<Contact>,
     /// Nodes of the smaller part that were looked at and meet nothing.
-    unmet: Vec<u32>,
-    /// Nodes of the smaller part for each one that was looked at.
-    pub(super) nodes_per_place: f64,
+    unmet: Vec<WeightedNode>,
     /// Share of the smaller part's area that meets the other part.
     pub(crate) share: f64,
     /// Middle of the places, and their mean distance from it.
@@ -77,8 +77,9 @@ pub(crate) struct ContactSearch<'a> {
     of_source: bool,
     /// Distance in target units beyond which parts do not meet.
     reach: f64,
-    stride: usize,
-    /// Of each node that is looked at, the triangle that was closest to it under the last pose.
+    /// The nodes that are looked at.
+    nodes: Arc<[WeightedNode]>,
+    /// Of each of them the triangle that was closest to it under the last pose.
     closest: Vec<Option<u32>>,
 }
 
@@ -92,15 +93,14 @@ impl<'a> ContactSearch<'a> {
     ) -> Self {
         let of_source = is_source_smaller(source, target, scale);
         let data = if of_source { source } else { target };
-        let n_nodes = data.mesh().positions().len();
-        let stride = n_nodes.div_ceil(max_nodes).max(1);
+        let nodes = data.even_nodes(max_nodes);
         Self {
             source,
             target,
             of_source,
             reach,
-            stride,
-            closest: vec![None; n_nodes.div_ceil(stride)],
+            closest: vec![None; nodes.len()],
+            nodes,
         }
     }
 
@@ -127,16 +127,16 @@ impl<'a> ContactSearch<'a> {
         scaled: Option<&Scaled>,
     ) -> Option<Contacts> {
         let sides = Sides::new([self.source, self.target], pose, self.of_source);
-        let (stride, reach) = (self.stride, self.reach);
-        let nodes = self.closest.par_iter_mut().enumerate();
-        let (list, unmet) = nodes.partition_map(|(k, closest)| {
-            match sides.contact(k * stride, reach, scaled, closest) {
+        let reach = self.reach;
+        let nodes = self.nodes.par_iter().zip(&mut self.closest);
+        let (list, unmet) = nodes.partition_map(|(&node, closest)| {
+            match sides.contact(node, reach, scaled, closest) {
                 Some(contact) => Either::Left(contact),
-                None => Either::Right((k * stride) as u32),
+                None => Either::Right(node),
             }
         });
-        let areas = sides.data.vertex_areas().iter().step_by(stride);
-        Contacts::of(list, unmet, areas.sum(), stride as f64)
+        let total = self.nodes.iter().map(|node| node.area).sum();
+        Contacts::of(list, unmet, total)
     }
 
     /// The scale that would fit the source best to the places of the target that it meets under a pose, times that of
@@ -171,7 +171,12 @@ impl<'a> ContactSearch<'a> {
                 positions[vertex]
             })
         });
-        let list = asked.filter_map(|vertex| sides.contact(vertex, self.reach, None, &mut None));
+        let areas = sides.data.vertex_areas();
+        let nodes = asked.map(|vertex| WeightedNode {
+            vertex: vertex as u32,
+            area: areas[vertex],
+        });
+        let list = nodes.filter_map(|node| sides.contact(node, self.reach, None, &mut None));
         list.collect()
     }
 
@@ -180,10 +185,10 @@ impl<'a> ContactSearch<'a> {
         &self,
         pose: &Similarity,
         of_source: bool,
-        nodes: &[u32],
+        nodes: &[WeightedNode],
     ) -> Vec<Contact> {
         let sides = Sides::new([self.source, self.target], pose, of_source);
-        let met = |&node: &u32| sides.contact(node as usize, self.reach, None, &mut None);
+        let met = |&node: &WeightedNode| sides.contact(node, self.reach, None, &mut None);
         nodes.par_iter().filter_map(met).collect()
     }
 
@@ -198,16 +203,14 @@ impl<'a> ContactSearch<'a> {
             ..
         } = Sides::new([self.source, self.target], pose, self.of_source);
         let reach = self.reach / unit;
-        let nodes = (0..data.mesh().positions().len()).into_par_iter();
-        let areas = nodes.step_by(self.stride).map(|vertex| {
-            let moved = model_from_data.apply(&data.mesh().positions()[vertex]);
+        let areas = self.nodes.par_iter().map(|node| {
+            let moved = model_from_data.apply(&data.mesh().positions()[node.vertex as usize]);
             let hit = model.bvh().closest(&moved, f64::INFINITY, None, None);
             let is_beyond = hit.is_some_and(|hit| {
                 model.is_on_border(&hit)
                     && ((moved - hit.point).norm() > reach || is_beside(model, &hit, &moved))
             });
-            let area = data.vertex_areas()[vertex];
-            (if is_beyond { area } else { 0.0 }, area)
+            (if is_beyond { node.area } else { 0.0 }, node.area)
         });
         // Summed in one order, whatever the number of threads.
         let areas: Vec<(f64, f64)> = areas.collect();
@@ -250,7 +253,7 @@ impl<'a> Sides<'a> {
     /// becomes the one found.
     fn contact(
         &self,
-        vertex: usize,
+        node: WeightedNode,
         reach: f64,
         scaled: Option<&Scaled>,
         closest: &mut Option<u32>,
@@ -262,7 +265,7 @@ impl<'a> Sides<'a> {
             unit,
             ..
         } = self;
-        let weight = data.vertex_areas()[vertex];
+        let (vertex, weight) = (node.vertex as usize, node.area);
         if weight <= 0.0 {
             return None;
         }
@@ -307,7 +310,7 @@ impl<'a> Sides<'a> {
 
 impl Contacts {
     /// Places where parts meet, of which the smaller has the area `total` at the nodes looked at.
-    fn of(list: Vec<Contact>, unmet: Vec<u32>, total: f64, nodes_per_place: f64) -> Option<Self> {
+    fn of(list: Vec<Contact>, unmet: Vec<WeightedNode>, total: f64) -> Option<Self> {
         let sum: f64 = list.iter().map(|c| c.weight).sum();
         let origin = list.first()?.point;
         let mean: Vector3 = list.iter().map(|c| (c.point - origin) * c.weight).sum();
@@ -316,7 +319,6 @@ impl Contacts {
         let radius = list.iter().map(arm).sum::<f64>() / sum;
         (radius > 0.0).then_some(Self {
             share: sum / total,
-            nodes_per_place,
             list,
             unmet,
             center,
@@ -436,6 +438,7 @@ fn facet_error(model: &Surface, triangle: usize, normal: &Vector3) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::TriMesh;
 
     #[test]
     fn patches_of_a_few_places_have_numbers_of_their_own() {
@@ -447,7 +450,7 @@ mod tests {
                 weight: 1.0,
                 facet: 0.0,
             });
-            Contacts::of(list.collect(), Vec::new(), n as f64, 1.0).unwrap()
+            Contacts::of(list.collect(), Vec::new(), n as f64).unwrap()
         };
         let n_patches = [(3, 3), (5, 5), (9, 9), (16, 16), (17, 16), (40, 16)];
         for (n, expected) in n_patches {
@@ -455,6 +458,52 @@ mod tests {
             assert!(patches.is_sorted(), "{patches:?}");
             patches.dedup();
             assert_eq!(patches, (0..expected).collect::<Vec<_>>(), "{n}");
+        }
+    }
+
+    /// A sheet of 80 by `length` with cells of 1 by 1 for x below 40 and of 10 by 10 beyond.
+    fn graded_sheet(length: usize) -> Surface {
+        let columns: Vec<f64> = (0..40)
+            .map(f64::from)
+            .chain([40.0, 50.0, 60.0, 70.0, 80.0])
+            .collect();
+        let n = columns.len();
+        let points = (0..=length).flat_map(|y| {
+            columns.iter().map(move |&x| {
+                let y = if x > 40.0 { y / 10 * 10 } else { y };
+                Point3::new(x, y as f64, 0.0)
+            })
+        });
+        let cells = (0..length).flat_map(|y| (0..n - 1).map(move |x| (x, y)));
+        let triangles = cells.flat_map(|(x, y)| {
+            let a = (y * n + x) as u32;
+            let up = a + n as u32;
+            [[a, a + 1, up + 1], [a, up + 1, up]]
+        });
+        let mesh = TriMesh::new(points.collect(), triangles.collect()).unwrap();
+        Surface::new(&mesh, "source").unwrap()
+    }
+
+    #[test]
+    fn the_share_that_meets_is_that_of_the_area_however_a_mesh_is_graded() {
+        let sheet = graded_sheet(200);
+        // Lengthwise: the two halves of it are meshed alike, and across: one is fine and one is coarse.
+        for (shift, met) in [
+            (Vector3::y() * 50.0, 0.75),
+            (Vector3::x() * 15.0, 0.8125),
+            (Vector3::x() * 60.0, 0.25),
+        ] {
+            let pose = Similarity::from_translation(shift);
+            for max_nodes in [100_000, 400] {
+                let mut search = ContactSearch::new([&sheet, &sheet], 1.0, 0.5, max_nodes);
+                let share = search.at(&pose).unwrap().share;
+                let overhang = search.overhang(&pose);
+                assert!((share - met).abs() < 0.03, "{shift:?} {max_nodes}: {share}");
+                assert!(
+                    (overhang - (1.0 - met)).abs() < 0.03,
+                    "{shift:?} {max_nodes}: {overhang}"
+                );
+            }
         }
     }
 }

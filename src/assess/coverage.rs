@@ -144,13 +144,12 @@ pub fn quick_overlap(
     let own_limit = limit / target_from_source.scale;
     let share = |data: &Surface, model: &Surface, pose: &Similarity, limit: f64| {
         let positions = data.mesh().positions();
-        let step = positions.len().div_ceil(n_points.max(1)).max(1);
-        let nodes = positions.iter().zip(data.vertex_areas()).step_by(step);
         let (mut covered, mut total) = (0.0, 0.0);
-        for (point, area) in nodes {
-            let hit = model.bvh().closest(&pose.apply(point), limit, None, None);
-            covered += hit.map_or(0.0, |_| *area);
-            total += area;
+        for node in data.even_nodes(n_points.max(1)).iter() {
+            let moved = pose.apply(&positions[node.vertex as usize]);
+            let hit = model.bvh().closest(&moved, limit, None, None);
+            covered += hit.map_or(0.0, |_| node.area);
+            total += node.area;
         }
         if total > 0.0 { covered / total } else { 0.0 }
     };

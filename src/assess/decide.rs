@@ -471,6 +471,20 @@ mod tests {
     }
 
     #[test]
+    fn two_holes_hold_a_part_unless_a_third_has_no_counterpart() {
+        let holds = |n_holes, only_source, only_target| {
+            is_held_by_holes(&BorderFit {
+                n_holes,
+                only_source,
+                only_target,
+                ..BorderFit::default()
+            })
+        };
+        assert!(holds(2, 0, 0));
+        assert!(!holds(1, 0, 0) && !holds(2, 1, 0) && !holds(5, 0, 1));
+    }
+
+    #[test]
     fn pieces_of_one_part_share_enough_and_lie_beyond_each_other_otherwise() {
         let hardly = ShapeReason::HardlyMet { share: 0.4 };
         let shares = |met, overhang, reasons: &[ShapeReason]| {

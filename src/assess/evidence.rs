@@ -9,7 +9,7 @@ use super::coverage::{NearNode, NearNodes};
 use super::least_squares::NormalEquations;
 use super::tolerance::Distances;
 use crate::geometry::{Point3, Similarity, Vector3};
-use crate::registration::Surface;
+use crate::registration::{Surface, WeightedNode};
 
 /// Two parts under a pose, and where they meet.
 pub(crate) struct PoseEvidence<'a> {
@@ -65,13 +65,19 @@ impl PoseEvidence<'_> {
     ) -> [Vec<Contact>; 2] {
         let search = self.search();
         [true, false].map(|of_source| {
-            let near = &self.near[usize::from(!of_source)].nodes;
-            let far = near.par_iter().filter(|near| near.distance >= least);
+            let near = &self.near[usize::from(!of_source)];
+            let data = if of_source { self.source } else { self.target };
+            let areas = data.vertex_areas();
+            let far = near.nodes.par_iter().filter(|near| near.distance >= least);
             let asked = far.filter(|near| {
                 let (point, normal, gap) = self.roughly(near, of_source);
                 is_asked(&point, &normal, gap)
             });
-            let asked: Vec<u32> = asked.map(|near| near.node).collect();
+            let asked = asked.map(|place| WeightedNode {
+                vertex: place.node,
+                area: areas[place.node as usize] * near.per_node as f64,
+            });
+            let asked: Vec<WeightedNode> = asked.collect();
             if asked.len() > most {
                 return Vec::new();
             }

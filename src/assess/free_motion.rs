@@ -29,7 +29,7 @@ const WEAK_BELOW: f64 = 3e-3;
 const WEAKEST_BELOW: f64 = 5e-2;
 
 /// Nodes that are looked at; more do not change the eigenvalues by a percent.
-const MAX_NODES: usize = 4000;
+const MAX_NODES: usize = 3000;
 
 /// A motion with less of a turn is a shift (square of the turn's share).
 const SHIFT: f64 = 1e-12;
@@ -381,16 +381,12 @@ fn held_points(
     target_from_source: &Similarity,
     limit: f64,
 ) -> Vec<Held> {
-    let n = source.mesh().n_vertices();
-    let stride = n.div_ceil(MAX_NODES).max(1);
-    (0..n.div_ceil(stride))
-        .into_par_iter()
-        .map(|place| place * stride)
-        .filter_map(|vertex| {
+    (source.even_nodes(MAX_NODES).par_iter())
+        .filter_map(|node| {
+            let vertex = node.vertex as usize;
             let moved = target_from_source.apply(&source.mesh().positions()[vertex]);
             let hit = target.bvh().closest(&moved, limit, None, None)?;
-            let weight = source.vertex_areas()[vertex];
-            Some((hit.point, target.normal_at(&hit), weight))
+            Some((hit.point, target.normal_at(&hit), node.area))
         })
         .filter(|(_, _, weight)| *weight > 0.0)
         .collect()

@@ -42,6 +42,7 @@ pub use result::{
 };
 pub use scale_check::{ScaleCheck, UnitGuess, guess_unit};
 pub use settings::{DataSide, Hand, MatchSettings, Method, Search, limits};
+pub(crate) use subsample::WeightedNode;
 pub(crate) use surface::principal_frame;
 pub use surface::{Measures, Surface};
 pub(crate) use wide::is_piece;

@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::SymmetricEigen;
 
 use super::RegistrationError;
+use super::subsample::{EvenChoices, WeightedNode};
 use crate::geometry::chunks::{for_chunks, map_chunks};
 use crate::geometry::{
     Border, BorderEdges, CleanMesh, CornerNormals, Matrix3, Point3, Similarity, Topology, TriMesh,
@@ -29,6 +30,7 @@ pub struct Surface {
     given: Vec<u32>,
     normals: CornerNormals,
     vertex_areas: Vec<f64>,
+    even_choices: EvenChoices,
     /// For each triangle a bit for each side that is a border edge.
     border_sides: Vec<u8>,
     border_vertices: Vec<bool>,
@@ -168,6 +170,7 @@ impl Surface {
             given,
             normals,
             vertex_areas,
+            even_choices: EvenChoices::default(),
             border_edges,
             border_sides,
             border_vertices,
@@ -222,6 +225,23 @@ impl Surface {
     /// A third of the area around each vertex.
     pub fn vertex_areas(&self) -> &[f64] {
         &self.vertex_areas
+    }
+
+    /// About `n` vertices that stand for equal areas, evenly spread however the mesh is graded, in an order in which
+    /// neighbours lie near each other. All vertices in their order, each with its own area, if there are no more. Made
+    /// once for each `n`. O(vertices · log vertices) the first time.
+    pub(crate) fn even_nodes(&self, n: usize) -> Arc<[WeightedNode]> {
+        let nodes = self.even_nodes_for(n, &Monitor::silent());
+        nodes.expect("nobody cancels a silent monitor")
+    }
+
+    /// [`Surface::even_nodes`] that ends when `monitor` is cancelled.
+    pub(crate) fn even_nodes_for(
+        &self,
+        n: usize,
+        monitor: &Monitor,
+    ) -> Result<Arc<[WeightedNode]>, Cancelled> {
+        self.even_choices.of(self, n, monitor)
     }
 
     /// The unit normal at a hit, interpolated between the triangle's corners; across sharp edges

@@ -284,7 +284,7 @@ impl Candidate {
             && self.n_holes >= HOLES_THAT_HOLD
             && self.n_alone < other.n_alone
             && (self.has_no_remainder(noise) || remains_much_less)
-            && self.apart_in_all() <= other.apart_in_all()
+            && self.apart_in_all() <= other.apart_in_all() + noise
     }
 
     /// Whether each part has a piece here that the other lacks, so much of the smaller one meets the other, and nothing

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::{Contact, ContactSearch, Contacts, MIN_FACING, Sides, is_beside};
 use crate::geometry::Similarity;
+use crate::registration::WeightedNode;
 use crate::search::ClosestPoint;
 
 /// Such a piece is looked for up to so many times the distance within which parts meet.
@@ -21,7 +22,6 @@ impl ContactSearch<'_> {
     ) -> Vec<Contact> {
         let sides = Sides::new([self.source, self.target], pose, self.of_source);
         let displaced = contacts.unmet.par_iter().filter_map(|&node| {
-            let node = node as usize;
             let far = sides.contact(node, FARTHEST * self.reach, None, &mut None)?;
             (!sides.is_met_beneath(node, self.reach)).then_some(far)
         });
@@ -31,9 +31,11 @@ impl ContactSearch<'_> {
 
 impl Sides<'_> {
     /// Whether the place of the model closest to a node has a counterpart on the other part within `reach`.
-    fn is_met_beneath(&self, node: usize, reach: f64) -> bool {
+    fn is_met_beneath(&self, node: WeightedNode, reach: f64) -> bool {
         let Self { data, model, .. } = self;
-        let moved = self.model_from_data.apply(&data.mesh().positions()[node]);
+        let moved = self
+            .model_from_data
+            .apply(&data.mesh().positions()[node.vertex as usize]);
         let Some(beneath) = model.bvh().closest(&moved, f64::INFINITY, None, None) else {
             return false;
         };

@@ -129,12 +129,11 @@ impl LocalSearch<'_> {
     fn among_places(&self) -> Option<Difference> {
         let contacts = &self.evidence.contacts;
         let displaced = self.evidence.displaced();
-        let per_place = contacts.nodes_per_place;
         let met = contacts.list.iter().zip(&self.fit.left);
-        let met = met.filter_map(|(contact, &left)| self.apart(contact, (left, true), per_place));
+        let met = met.filter_map(|(contact, &left)| self.apart(contact, left, true));
         let others = displaced.iter().filter_map(|contact| {
             let left = self.fit.left_at(contact, contacts);
-            self.apart(contact, (left, false), per_place)
+            self.apart(contact, left, false)
         });
         let places: Vec<Apart> = met.chain(others).collect();
         let [of_source, of_target] = self.edges();
@@ -161,10 +160,9 @@ impl LocalSearch<'_> {
         let least = ROUGHLY * self.tolerance.remainder - BEYOND_PLACES * self.fit.most_explained();
         let met = self.evidence.of_near(least, is_asked, MOST_FAR);
         let [of_source, of_target] = [0, 1].map(|side| {
-            let per_node = self.evidence.near[side].per_node as f64;
             let apart = |contact| {
                 let left = self.fit.left_at(contact, &self.evidence.contacts);
-                self.apart(contact, (left, true), per_node)
+                self.apart(contact, left, true)
             };
             met[side].iter().filter_map(apart).collect::<Vec<Apart>>()
         });
@@ -176,17 +174,12 @@ impl LocalSearch<'_> {
     }
 
     /// A contact as a place apart, if it is one.
-    fn apart<'b>(
-        &self,
-        contact: &'b Contact,
-        (left, meets): (f64, bool),
-        nodes_per_place: f64,
-    ) -> Option<Apart<'b>> {
+    fn apart<'b>(&self, contact: &'b Contact, left: f64, meets: bool) -> Option<Apart<'b>> {
         self.is_beyond(left).then(|| Apart {
             contact,
             left,
             meets,
-            size: (contact.weight * nodes_per_place).sqrt(),
+            size: contact.weight.sqrt(),
         })
     }
 

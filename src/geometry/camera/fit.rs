@@ -7,6 +7,9 @@ use crate::geometry::{Aabb, Point3, Vector3};
 const MARGIN: f64 = 0.05;
 /// What lies over a picture leaves at least this share of its width and of its height.
 const LEAST_FREE: f64 = 0.4;
+/// Below a legend a scene lies near the edge of the picture. It is put there if it becomes so much larger than beside
+/// the legend.
+const LARGER_BELOW: f64 = 1.15;
 
 /// What lies over the edges of a picture: shares of its width and height, each 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -25,7 +28,7 @@ pub struct Covered {
     /// What a legend at an edge covers is left free as a strip beside it, of which these are the shares of the width
     /// at the left and at the right, …
     pub beside: [f64; 2],
-    /// … or as one above its foot, of which this is the share of the height: whichever leaves the scene larger.
+    /// … or as one above its foot, of which this is the share of the height, if that leaves the scene clearly larger.
     pub above: f64,
 }
 
@@ -141,7 +144,7 @@ impl Camera {
             camera
         });
         let [beside, above] = ways.map(|covered| covered.is_too_much());
-        let is_larger = fitted[1].height < fitted[0].height;
+        let is_larger = LARGER_BELOW * fitted[1].height < fitted[0].height;
         let is_above = if beside == above { is_larger } else { beside };
         *self = fitted[usize::from(is_above)];
     }

@@ -257,6 +257,10 @@ fn a_legend_takes_the_strip_that_leaves_the_part_larger() {
     let (high, wide) = ([200.0, 1.0, 1000.0], [1000.0, 1.0, 200.0]);
     assert_eq!(fitted(high, &covered), fitted(high, &side));
     assert_eq!(fitted(wide, &covered), fitted(wide, &above));
+    // A part that is hardly larger below the legend stays in the middle beside it.
+    let nearly = [1000.0, 1.0, 1000.0];
+    assert!(fitted(nearly, &above).height < fitted(nearly, &side).height);
+    assert_eq!(fitted(nearly, &covered), fitted(nearly, &side));
     // A strip that would leave too little is not taken, as long as the other one leaves enough.
     let low = Covered {
         above: 0.8,
