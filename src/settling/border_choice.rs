@@ -309,6 +309,14 @@ impl Refined {
         !are_trimmed_alike && self.held >= HELD_BY_OTHERS && has_its_holes
     }
 
+    /// Whether a hole is misplaced that is not under the other pose, with no fewer of them: another trim moves
+    /// outlines, and no hole.
+    fn misplaces_holes_beside(&self, other: &Self, within: f64) -> bool {
+        let lie_closer =
+            other.worst_hole <= within || MUCH_FARTHER * other.worst_hole < self.worst_hole;
+        other.n_holes >= self.n_holes && lie_closer && self.worst_hole > within
+    }
+
     /// Whether more holes have their counterpart than under the other pose, at no cost: as much of the part
     /// meets the other, and no more holes lie where it is solid. Outlines do not count against that:
     /// pieces of them lie beside each other by chance, as a hole hardly ever does.
@@ -367,12 +375,7 @@ impl<'c, 'a> PoseComparison<'c, 'a> {
         let is_close = result.is_as_close_as(closest, &self.distances);
         let beats = |a: &Refined, b: &Refined| a.has_more_holes_than(b, self.remainder());
         let is_better = |other: &Refined| {
-            // Another trim moves outlines, and no hole.
-            let lie_closer = result.worst_hole <= self.remainder()
-                || MUCH_FARTHER * result.worst_hole < other.worst_hole;
-            let misplaces_holes = result.n_holes >= other.n_holes
-                && lie_closer
-                && other.worst_hole > self.remainder();
+            let misplaces_holes = other.misplaces_holes_beside(result, self.remainder());
             let more = result.held + result.grain.max(MORE_HELD);
             let is_chance = other.n_holes == 0 && other.held <= BY_CHANCE;
             // A piece can always be slid along a profile until one of its ends lies on an outline. Where it then covers
@@ -385,9 +388,17 @@ impl<'c, 'a> PoseComparison<'c, 'a> {
             !is_close || holds_more || beats(other, result)
         };
         let better: Vec<&Refined> = rivals.iter().filter(|other| is_better(other)).collect();
+        let is_beaten = |pose: &Refined, other: &Refined| {
+            let places_holes = other.worst_hole <= self.remainder()
+                && pose.misplaces_holes_beside(other, self.remainder())
+                && other.missing <= pose.missing + pose.grain
+                && other.met >= pose.met - SAME_MET
+                && other.gap <= pose.gap + NO_GAP * self.remainder();
+            beats(other, pose) || places_holes
+        };
         let unbeaten = better
             .iter()
-            .filter(|pose| !better.iter().any(|other| beats(other, pose)));
+            .filter(|pose| !better.iter().any(|other| is_beaten(pose, other)));
         let best = unbeaten.max_by(|a, b| a.held.total_cmp(&b.held));
         best.map(|best| **best)
     }

@@ -48,6 +48,22 @@ fn a_few_borders_hold_no_pose_unless_a_hole_is_among_them() {
         let choice = comparison.choice(&result, &result, &[rival]);
         assert_eq!(choice.is_some(), wins, "{} of {}", rival.held, result.held);
     }
+    // Among rivals too an end that lies on an outline is worth less than a hole on its counterpart, …
+    let chosen = |rivals: &[Refined]| comparison.choice(&off(0.3, 17.0), &off(0.3, 17.0), rivals);
+    let (exact, shifted) = (off(0.6, 0.1), off(0.7, 7.0));
+    for rivals in [[exact, shifted], [shifted, exact]] {
+        assert_eq!(chosen(&rivals).unwrap().worst_hole, 0.1);
+    }
+    // … unless more holes lie where the other part is solid, or less of the part meets it.
+    for worse in [
+        Refined {
+            missing: 0.1,
+            ..exact
+        },
+        Refined { met: 0.9, ..exact },
+    ] {
+        assert_eq!(chosen(&[worse, shifted]).unwrap().worst_hole, 7.0);
+    }
 }
 
 #[test]
