@@ -54,13 +54,14 @@ fn a_few_borders_hold_no_pose_unless_a_hole_is_among_them() {
     for rivals in [[exact, shifted], [shifted, exact]] {
         assert_eq!(chosen(&rivals).unwrap().worst_hole, 0.1);
     }
-    // … unless more holes lie where the other part is solid, or less of the part meets it.
+    // … unless more holes lie where the other part is solid, less of the part meets it, or surfaces lie farther off.
     for worse in [
         Refined {
             missing: 0.1,
             ..exact
         },
         Refined { met: 0.9, ..exact },
+        Refined { gap: 0.2, ..exact },
     ] {
         assert_eq!(chosen(&[worse, shifted]).unwrap().worst_hole, 7.0);
     }
