@@ -114,7 +114,9 @@ impl Beside<'_> {
     /// An alternative, rated by the shapes where it settles.
     fn rated(&self, other: Alternative, candidate: &Candidate) -> Alternative {
         let (winner, noise) = (self.winner, self.distances.noise);
-        if winner.beats(candidate) {
+        if winner.beats(candidate)
+            || winner.lies_much_closer_without_difference_than(candidate, noise)
+        {
             return beaten(other);
         }
         let fits_elsewhere = self.overhangs

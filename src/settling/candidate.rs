@@ -35,6 +35,10 @@ const ALL_ROUND: f64 = 0.9;
 /// Surfaces that lie apart by at most so many times what facets leave lie on each other.
 pub(super) const ON_EACH_OTHER: f64 = 2.0;
 
+/// Where surfaces lie so many times as far apart as under a pose that nothing speaks against, facets included, it is
+/// no matter of facets that something differs.
+const MUCH_FARTHER: f64 = 2.0;
+
 /// Whether a piece of the smaller part that meets the other lies much closer there than the part does that lies `other`
 /// apart.
 pub(super) fn is_much_closer(piece: Meeting, other: f64, noise: f64) -> bool {
@@ -370,6 +374,19 @@ impl Candidate {
         self.n_differences < other.n_clear
             || pairs_holes && self.n_differences <= other.n_differences
             || self.n_differences == 0 && other.n_differences > 0 && self.lies_closer_than(other)
+    }
+
+    /// Whether nothing differs under this pose while something does under another one, under which no more meets and
+    /// the surfaces lie much farther apart. `noise` is what facets leave.
+    pub(super) fn lies_much_closer_without_difference_than(
+        &self,
+        other: &Self,
+        noise: f64,
+    ) -> bool {
+        !self.differs()
+            && other.differs()
+            && self.meets_as_much_as(other)
+            && other.apart() + noise >= MUCH_FARTHER * (self.apart() + noise)
     }
 
     /// Whether both outlines and holes lie closer under this pose by more than is accepted, and no fewer holes have

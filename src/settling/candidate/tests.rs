@@ -158,6 +158,35 @@ fn a_pose_that_settles_as_close_is_as_likely_whatever_it_scored_on_the_way() {
 }
 
 #[test]
+fn a_pose_that_differs_and_lies_much_farther_apart_is_no_rival_of_one_that_does_neither() {
+    let bead = ShapeReason::Local {
+        by: 1.1,
+        limit: 1.0,
+        at: Point3::origin(),
+        is_end: false,
+    };
+    let at = |remainder, met, reasons: &[ShapeReason]| Candidate {
+        met,
+        bend: 0.1,
+        remainder,
+        ..candidate(reasons)
+    };
+    let right = at(0.04, 0.99, &[]);
+    let is_behind =
+        |other: &Candidate, noise| right.lies_much_closer_without_difference_than(other, noise);
+    assert!(is_behind(&at(1.07, 0.99, &[bead]), 0.1));
+    // Facets explain it, nothing differs, or more of the part meets.
+    assert!(!is_behind(&at(1.07, 0.99, &[bead]), 1.0));
+    assert!(!is_behind(&at(1.07, 0.99, &[]), 0.1));
+    let overhanging = at(0.04, 0.9, &[]);
+    let whole = at(1.07, 0.99, &[bead]);
+    assert!(!overhanging.lies_much_closer_without_difference_than(&whole, 0.1));
+    // Another version differs under its right pose too.
+    let version = at(0.04, 0.99, &[bead]);
+    assert!(!version.lies_much_closer_without_difference_than(&whole, 0.1));
+}
+
+#[test]
 fn a_smaller_piece_of_an_unpierced_part_is_as_likely() {
     let points = [[0.0, 0.0, 0.0], [900.0, 0.0, 0.0], [0.0, 500.0, 0.0]].map(Point3::from);
     let mesh = TriMesh::new(points.to_vec(), vec![[0, 1, 2]]).unwrap();
