@@ -11,6 +11,7 @@ mod bvh;
 mod cones;
 mod distance;
 mod feature_grid;
+pub(crate) mod lanes;
 mod nearby;
 mod pack;
 mod pieces;

@@ -1,6 +1,7 @@
 //! The search along the motions that surfaces leave free: a plate, a rail or a cup lies on its counterpart
 //! at many places, and only borders and holes distinguish these.
 
+use glam::Vec4;
 use nalgebra::SVector;
 use rayon::prelude::*;
 
@@ -12,6 +13,7 @@ use crate::assess::tolerance::is_source_smaller;
 use crate::geometry::{Aabb, Point3, Rotation, Similarity, Vector3};
 use crate::monitor::Cancelled;
 use crate::registration::Surface;
+use crate::search::lanes::{FourVectors, by_coordinate, difference, dot, rotated};
 use crate::search::{FeatureGrid, GridSettings};
 
 /// Places along the borders of the smaller part, of which half lie on holes where there are any.
@@ -261,6 +263,29 @@ impl Local {
     }
 }
 
+/// Four places in the frame of the grid, coordinate by coordinate.
+#[derive(Clone, Copy, Default)]
+struct FourPlaces {
+    point: FourVectors,
+    tangent: FourVectors,
+    /// 0 of one that only fills up the four.
+    weight: Vec4,
+}
+
+impl FourPlaces {
+    fn of(places: &[Local]) -> Self {
+        let mut four = Self::default();
+        for (lane, place) in places.iter().enumerate() {
+            for k in 0..3 {
+                four.point[k][lane] = place.point[k] as f32;
+                four.tangent[k][lane] = place.tangent[k] as f32;
+            }
+            four.weight[lane] = place.weight as f32;
+        }
+        four
+    }
+}
+
 /// The borders of both parts for searches along any family of poses: places along those of the smaller part, which
 /// is the data, and a grid over those of the larger one.
 pub(super) struct FamilyBorders {
@@ -279,6 +304,8 @@ pub(super) struct FamilyBorders {
 struct FamilySearch<'a> {
     borders: &'a FamilyBorders,
     data: Vec<Local>,
+    /// The same, four at a time.
+    fours: Vec<FourPlaces>,
     extent: f64,
 }
 
@@ -322,9 +349,11 @@ impl FamilyBorders {
             let place = place.moved(model_from_data);
             Local::of(&place, *weight, &self.grid)
         });
+        let data: Vec<Local> = data.collect();
         FamilySearch {
             borders: self,
-            data: data.collect(),
+            fours: data.chunks(4).map(FourPlaces::of).collect(),
+            data,
             extent: self.data_extent * model_from_data.scale,
         }
     }
@@ -341,15 +370,16 @@ impl FamilySearch<'_> {
         let all = (0..count as u32).into_par_iter().with_min_len(256);
         let loss = |index: u32, n: usize| {
             let motion = motion(axes, &amounts(axes, index as usize));
-            let places = &self.data[..n.min(self.data.len())];
+            let places = &self.fours[..n.min(self.fours.len())];
             (self.loss(places, &motion, self.borders.cut), index)
         };
         let by_loss = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-        let mut field: Vec<(f64, u32)> = all.map(|index| loss(index, N_FIRST)).collect();
+        let mut field: Vec<(f64, u32)> = all.map(|index| loss(index, N_FIRST / 4)).collect();
         keep_first(&mut field, MOST_SORTED, by_loss);
         context.check()?;
         let sorted = field.into_par_iter();
-        let mut field: Vec<(f64, u32)> = sorted.map(|(_, index)| loss(index, N_SECOND)).collect();
+        let mut field: Vec<(f64, u32)> =
+            sorted.map(|(_, index)| loss(index, N_SECOND / 4)).collect();
         keep_first(&mut field, MOST_REFINED, by_loss);
         context.check()?;
         let (first, then) = CUTS.split_at(1);
@@ -358,7 +388,7 @@ impl FamilySearch<'_> {
             .map(|&(_, index)| {
                 let amounts = self.refined(axes, amounts(axes, index as usize), first);
                 (
-                    self.loss(&self.data, &motion(axes, &amounts), self.borders.cut),
+                    self.loss(&self.fours, &motion(axes, &amounts), self.borders.cut),
                     amounts,
                 )
             })
@@ -372,7 +402,7 @@ impl FamilySearch<'_> {
             .map(|&(_, begun)| {
                 let motion = motion(axes, &self.refined(axes, begun, then));
                 RatedMotion {
-                    loss: self.loss(&self.data, &motion, CUTS[2] * self.borders.cut),
+                    loss: self.loss(&self.fours, &motion, CUTS[2] * self.borders.cut),
                     motion,
                 }
             })
@@ -433,24 +463,31 @@ impl FamilySearch<'_> {
 
     /// Mean over the places of the truncated squared distance across the nearest border, as a share of the
     /// square of the cut.
-    fn loss(&self, places: &[Local], motion: &Similarity, cut: f64) -> f64 {
+    fn loss(&self, places: &[FourPlaces], motion: &Similarity, cut: f64) -> f64 {
         let motion = self.in_grid(motion);
-        let per_cut = 1.0 / (cut * self.borders.grid.scale());
-        let (mut sum, mut total) = (0.0, 0.0);
-        for place in places {
-            let point = motion.rotation * place.point + motion.translation;
-            let tangent = motion.rotation * place.tangent;
-            let away = self.beside(&point, &tangent).map_or(1.0, |border| {
-                let off = point - border.point;
-                let across = off.dot(&border.across) * per_cut;
-                // Past the end of a border the distance along it counts as well.
-                let apart = (off.norm() * per_cut - 1.0).max(0.0);
-                (across * across + apart * apart).min(1.0)
-            });
-            sum += place.weight * away;
-            total += place.weight;
+        let rows = motion.rotation.transpose().cast::<f32>().data.0;
+        let [x, y, z] = motion.translation.cast::<f32>().into();
+        let per_cut_sq = (cut * self.borders.grid.scale()).powi(-2) as f32;
+        let (mut sum, mut total) = (Vec4::ZERO, Vec4::ZERO);
+        for four in places {
+            let [u, v, w] = rotated(&rows, &four.point);
+            let point = [u + x, v + y, w + z];
+            let turned = rotated(&rows, &four.tangent);
+            let [a, b, c, d] = self.borders.grid.nearest_four(point);
+            let border = by_coordinate([a.point, b.point, c.point, d.point]);
+            let tangent = by_coordinate([a.normal, b.normal, c.normal, d.normal]);
+            let off = difference(&point, &border);
+            let along = dot(&off, &tangent);
+            let off_sq = dot(&off, &off) * per_cut_sq;
+            let across_sq = off_sq - along * along * per_cut_sq;
+            // Past the end of a border the distance along it counts as well.
+            let past = (off_sq.sqrt() - 1.0).max(Vec4::ZERO);
+            let away = (across_sq + past * past).min(Vec4::ONE);
+            let is_parallel = dot(&turned, &tangent).abs().cmpgt(Vec4::splat(PARALLEL));
+            sum += four.weight * Vec4::select(is_parallel, away, Vec4::ONE);
+            total += four.weight;
         }
-        sum / total
+        f64::from(sum.element_sum() / total.element_sum())
     }
 
     /// The Gauss–Newton step of the amounts, pairs farther apart than `cut` left out.

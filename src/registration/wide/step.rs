@@ -2,13 +2,14 @@
 //!
 //! Nearly all of the wide search is spent here. `map` of arrays is left out where it was measured to become a call.
 
-use glam::{Mat4, Vec3A, Vec4};
+use glam::Vec4;
 use nalgebra::{Cholesky, Rotation3, SMatrix, SVector};
 
 use super::BLOCK;
 use super::cloud::{Cloud, HalfBlock, Motion32};
 use crate::geometry::{Matrix3, Vector3};
 use crate::search::FeatureGrid;
+use crate::search::lanes::{by_coordinate, cross, difference, dot, rotated};
 
 /// Normals of a pair differ by at most this angle (66°), given as its cosine.
 const MIN_COS: f32 = 0.4;
@@ -65,36 +66,6 @@ impl Pairs {
         let (xx, xy, xz, yy, yz, zz) = (x * x, x * y, x * z, y * y, y * z, z * z);
         [x, y, z, xx, xy, xz, yy, yz, zz, u, v, w, p, q, r]
     }
-}
-
-#[inline(always)]
-fn rotated(rows: &[[f32; 3]; 3], v: &[Vec4; 3]) -> [Vec4; 3] {
-    let along = |row: &[f32; 3]| v[0] * row[0] + v[1] * row[1] + v[2] * row[2];
-    [along(&rows[0]), along(&rows[1]), along(&rows[2])]
-}
-
-#[inline(always)]
-fn difference(a: &[Vec4; 3], b: &[Vec4; 3]) -> [Vec4; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-#[inline(always)]
-fn dot(a: &[Vec4; 3], b: &[Vec4; 3]) -> Vec4 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-fn cross(a: &[Vec4; 3], b: &[Vec4; 3]) -> [Vec4; 3] {
-    let along = |j: usize, k: usize| a[j] * b[k] - a[k] * b[j];
-    [along(1, 2), along(2, 0), along(0, 1)]
-}
-
-/// Four vectors coordinate by coordinate.
-#[inline(always)]
-fn by_coordinate([a, b, c, d]: [Vec3A; 4]) -> [Vec4; 3] {
-    let columns = Mat4::from_cols(a.extend(0.0), b.extend(0.0), c.extend(0.0), d.extend(0.0));
-    let turned = columns.transpose();
-    [turned.x_axis, turned.y_axis, turned.z_axis]
 }
 
 #[inline(always)]

@@ -62,3 +62,40 @@ fn a_piece_of_a_plate_is_found_by_its_holes_whichever_side_it_is_on() {
         }
     }
 }
+
+/// The loss place by place: what four at once are compared with.
+fn plain_loss(search: &FamilySearch<'_>, motion: &Similarity, cut: f64) -> f64 {
+    let motion = search.in_grid(motion);
+    let cut = cut * search.borders.grid.scale();
+    let away = |place: &Local| {
+        let point = motion.rotation * place.point + motion.translation;
+        let border = search.beside(&point, &(motion.rotation * place.tangent));
+        border.map_or(1.0, |border| {
+            let off = point - border.point;
+            let across = off.dot(&border.across) / cut;
+            let past = (off.norm() / cut - 1.0).max(0.0);
+            (across * across + past * past).min(1.0)
+        })
+    };
+    let sum: f64 = search.data.iter().map(|p| p.weight * away(p)).sum();
+    sum / search.data.iter().map(|p| p.weight).sum::<f64>()
+}
+
+#[test]
+fn four_places_at_once_lose_what_each_of_them_does() {
+    let borders = FamilyBorders::of(&plate(35), &plate(0)).unwrap();
+    let search = borders.under(&Similarity::identity());
+    assert!(search.loss(&search.fours, &Similarity::identity(), borders.cut) < 0.4);
+    let mut largest = 0.0_f64;
+    for k in 0..500 {
+        let share = |step: f64| (f64::from(k) * step).fract() - 0.5;
+        let turn = Generator::Turn(Vector3::z(), Point3::new(90.0, 40.0, 0.0));
+        let shift = Vector3::new(30.0 * share(0.37), 30.0 * share(0.71), 0.0);
+        let motion = turn.motion(TAU * share(0.618));
+        let motion = Generator::Shift(shift).motion(1.0).after(&motion);
+        let loss = search.loss(&search.fours, &motion, borders.cut);
+        let plain = plain_loss(&search, &motion, borders.cut);
+        largest = largest.max((loss - plain).abs());
+    }
+    assert!(largest < 1e-4, "{largest}");
+}
