@@ -66,8 +66,23 @@ struct Partners {
 pub(super) struct Scratch {
     search: Search,
     partners: Partners,
-    /// For each source and each rule of the target.
-    fields: Vec<Option<Fields>>,
+    fields: ChunkFields,
+}
+
+/// The fields that the elements of a chunk take their values from.
+#[derive(Default)]
+struct ChunkFields {
+    /// The rules that these elements have, rising.
+    rules: Vec<usize>,
+    /// For each source those at each rule.
+    of_sources: Vec<Vec<Fields>>,
+}
+
+impl ChunkFields {
+    fn of(&self, source: usize, rule: usize) -> &Fields {
+        let found = self.rules.binary_search(&rule);
+        &self.of_sources[source][found.expect("loaded for every element")]
+    }
 }
 
 impl Context<'_> {
@@ -99,8 +114,7 @@ impl Context<'_> {
             if out.reports[at].status.has_values() {
                 let fields_of = |group: &Group| -> &Fields {
                     let rule = self.rule(element, group.is_flipped);
-                    let of_source = &fields[self.field_index(group.source as usize, rule)];
-                    of_source.as_ref().expect("loaded for every group")
+                    fields.of(group.source as usize, rule)
                 };
                 let blend = Blend::new(self, element, groups, partners.is_copy[at], fields_of);
                 if self.push_values(element, &blend, &mut out) {
@@ -163,23 +177,21 @@ impl Context<'_> {
         }
     }
 
-    fn field_index(&self, source: usize, rule: usize) -> usize {
-        source * self.turned_over.len() + rule
-    }
-
     /// Fits the fields that the elements need, each once.
-    fn load_fields(&self, elements: &[u32], partners: &Partners, fields: &mut Vec<Option<Fields>>) {
-        let n_rules = self.turned_over.len();
-        fields.resize_with(self.sources.len() * n_rules, || None);
+    fn load_fields(&self, elements: &[u32], partners: &Partners, fields: &mut ChunkFields) {
+        let ChunkFields { rules, of_sources } = fields;
         let sides_at = |at: usize| {
             let element = elements[at] as usize;
             [false, true].map(|is_flipped| self.rule(element, is_flipped))
         };
-        let mut rules: Vec<usize> = (0..elements.len()).flat_map(sides_at).collect();
+        rules.clear();
+        rules.extend((0..elements.len()).flat_map(sides_at));
         rules.sort_unstable();
         rules.dedup();
-        for (source, prepared) in self.sources.iter().enumerate() {
-            for &rule in &rules {
+        of_sources.resize_with(self.sources.len(), Vec::new);
+        for (source, (prepared, fields)) in self.sources.iter().zip(of_sources).enumerate() {
+            fields.resize_with(rules.len(), || prepared.fields());
+            for (&rule, of_rule) in rules.iter().zip(fields) {
                 let rules = [rule, self.turned_over[rule]];
                 let strain_rules = if self.strains_at_surfaces {
                     [0; 2]
@@ -193,8 +205,6 @@ impl Context<'_> {
                     all.filter(move |group| sides_at(at)[usize::from(group.is_flipped)] == rule)
                 });
                 let groups = groups.filter(|group| group.source as usize == source);
-                let of_rule =
-                    fields[self.field_index(source, rule)].get_or_insert_with(|| prepared.fields());
                 let wanted = groups.map(|group| group.element);
                 prepared.load(of_rule, wanted, [rules, strain_rules]);
             }

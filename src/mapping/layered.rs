@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::layers::LayerMatrix;
+use super::layers::{LayerBalance, LayerMatrix};
 use super::rule::{LayerRule, SAME_PLACE, SAME_RULE};
 
 /// Where the effective plastic strain stands in the state of a point, behind the six stresses.
@@ -209,18 +209,46 @@ impl<const N: usize> Layered<N> {
         Some((rule, &self.values[first as usize..][..rule.len()]))
     }
 
-    /// The values at the layers of `target`; `matrices` makes, for one source rule, the matrix of each
-    /// of the `N` numbers.
+    /// The values at the layers of `target`, each number by its balance. `keeps_matrices` says whether those of all
+    /// rules are made now, or each where it is asked for.
     pub(super) fn at_layers(
         &self,
         target: &LayerRule,
-        matrices: impl Fn(&LayerRule) -> [LayerMatrix; N],
+        balances: [LayerBalance; N],
+        keeps_matrices: bool,
     ) -> AtLayers<'_, N> {
+        let kept = if keeps_matrices { &self.rules[..] } else { &[] };
+        let matrices = |from: &LayerRule| LayerMatrices::new(from, target, &balances);
         AtLayers {
             from: self,
-            matrices: self.rules.iter().map(matrices).collect(),
-            n_layers: target.len(),
+            matrices: kept.iter().map(matrices).collect(),
+            target: target.clone(),
+            balances,
         }
+    }
+}
+
+/// From the layers of one rule to those of another.
+struct LayerMatrices {
+    linear: LayerMatrix,
+    /// Where force and moment of some number are to stay.
+    balanced: Option<LayerMatrix>,
+}
+
+impl LayerMatrices {
+    fn new(from: &LayerRule, to: &LayerRule, balances: &[LayerBalance]) -> Self {
+        let of = |balance| LayerMatrix::new(from, to, balance);
+        let balanced = LayerBalance::ForceAndMoment;
+        Self {
+            linear: of(LayerBalance::Linear),
+            balanced: balances.contains(&balanced).then(|| of(balanced)),
+        }
+    }
+
+    fn of(&self, balance: LayerBalance) -> &LayerMatrix {
+        let balanced = self.balanced.as_ref();
+        let balanced = balanced.filter(|_| balance == LayerBalance::ForceAndMoment);
+        balanced.unwrap_or(&self.linear)
     }
 }
 
@@ -238,9 +266,10 @@ pub(super) trait Numbers<const N: usize> {
 /// times, and all of them at once would take several times the memory of the results.
 pub(super) struct AtLayers<'a, const N: usize> {
     from: &'a Layered<N>,
-    /// For each rule of the source the matrix of each number.
-    matrices: Vec<[LayerMatrix; N]>,
-    n_layers: usize,
+    /// For each rule of the source; empty where they are made when they are asked for.
+    matrices: Vec<LayerMatrices>,
+    target: LayerRule,
+    balances: [LayerBalance; N],
 }
 
 impl<const N: usize> AtLayers<'_, N> {
@@ -250,27 +279,33 @@ impl<const N: usize> AtLayers<'_, N> {
         let (rule, mean) = self.from.of(element)?;
         let own = plane.and_then(|plane| self.from.in_plane.of(element, plane, rule.len()));
         let given = own.as_deref().unwrap_or(mean);
-        let mut values = Vec::with_capacity(self.n_layers);
+        let mut values = Vec::with_capacity(self.target.len());
         let (_, rule) = self.from.records[element];
-        self.push_at_layers(given, &self.matrices[rule as usize], &mut values);
+        self.push_at_layers(given, rule, &mut values);
         Some(values)
     }
 
-    /// Appends what the layers of a target have, from those of an element.
-    fn push_at_layers(
-        &self,
-        given: &[[f64; N]],
-        matrices: &[LayerMatrix; N],
-        out: &mut Vec<[f64; N]>,
-    ) {
-        if matrices[0].is_identity() {
+    /// Appends what the layers of a target have, from those of an element of a rule.
+    fn push_at_layers(&self, given: &[[f64; N]], rule: u16, out: &mut Vec<[f64; N]>) {
+        match self.matrices.get(usize::from(rule)) {
+            Some(matrices) => self.push_by(matrices, given, out),
+            None => {
+                let from = &self.from.rules[usize::from(rule)];
+                let matrices = LayerMatrices::new(from, &self.target, &self.balances);
+                self.push_by(&matrices, given, out);
+            }
+        }
+    }
+
+    fn push_by(&self, matrices: &LayerMatrices, given: &[[f64; N]], out: &mut Vec<[f64; N]>) {
+        if matrices.linear.is_identity() {
             out.extend_from_slice(given);
             return;
         }
         let first = out.len();
-        out.resize(first + self.n_layers, [0.0; N]);
-        for (number, matrix) in matrices.iter().enumerate() {
-            for (layer, row) in matrix.rows().enumerate() {
+        out.resize(first + self.target.len(), [0.0; N]);
+        for (number, balance) in self.balances.into_iter().enumerate() {
+            for (layer, row) in matrices.of(balance).rows().enumerate() {
                 let terms = row.iter().zip(given).map(|(w, v)| w * v[number]);
                 out[first + layer][number] = terms.sum();
             }
@@ -280,7 +315,7 @@ impl<const N: usize> AtLayers<'_, N> {
 
 impl<const N: usize> Numbers<N> for AtLayers<'_, N> {
     fn n_layers(&self) -> usize {
-        self.n_layers
+        self.target.len()
     }
 
     fn has(&self, element: usize) -> bool {
@@ -289,13 +324,12 @@ impl<const N: usize> Numbers<N> for AtLayers<'_, N> {
 
     fn push(&self, element: usize, out: &mut Vec<[f64; N]>) {
         let (at, rule) = self.from.records[element];
-        let Some(matrices) = self.matrices.get(rule as usize) else {
-            out.resize(out.len() + self.n_layers, [0.0; N]);
+        let Some(own) = self.from.rules.get(usize::from(rule)) else {
+            out.resize(out.len() + self.target.len(), [0.0; N]);
             return;
         };
-        let n_source = self.from.rules[rule as usize].len();
-        let given = &self.from.values[at as usize..][..n_source];
-        self.push_at_layers(given, matrices, out);
+        let given = &self.from.values[at as usize..][..own.len()];
+        self.push_at_layers(given, rule, out);
     }
 }
 

@@ -17,7 +17,9 @@ use crate::monitor::{Cancelled, Monitor};
 const CHUNK: usize = 4096;
 /// At a node of more elements, as in the middle of a fan, only those beside each other are neighbours: lists of all of
 /// them would take memory by the square of their number.
-const MOST_AT_NODE: usize = 1024;
+const MOST_AT_NODE: usize = 128;
+/// Where more elements than these share an edge between two such nodes, there is no sheet, and none are neighbours.
+const MOST_AT_EDGE: usize = 8;
 
 /// Neighbours and border of a sheet.
 #[derive(Debug, Clone)]
@@ -76,6 +78,7 @@ impl Links {
         };
         let around_node = Lists::group([n_merged, mesh.len()], nodes_of, monitor)?;
         let has_area = |element: u32| mesh.areas()[element as usize] > 0.0;
+        let around_edge = CrowdedEdges::of(corners_of, &around_node, has_area, monitor)?;
         let chunks: Vec<Chunk> = corners_of
             .par_chunks(CHUNK)
             .enumerate()
@@ -85,7 +88,7 @@ impl Links {
                 Ok(Chunk::of(
                     first,
                     corners,
-                    &around_node,
+                    (&around_node, &around_edge),
                     corners_of,
                     has_area,
                 ))
@@ -303,7 +306,7 @@ impl Chunk {
     fn of(
         first: usize,
         chunk: &[[u32; 4]],
-        around_node: &Lists,
+        (around_node, around_edge): (&Lists, &CrowdedEdges),
         corners_of: &[[u32; 4]],
         has_area: impl Fn(u32) -> bool,
     ) -> Self {
@@ -331,12 +334,18 @@ impl Chunk {
                     continue;
                 }
                 let [a, b] = ends.map(|end| around_node.of(end as usize));
-                let around = if b.len() < a.len() { b } else { a };
+                let shorter = if b.len() < a.len() { b } else { a };
+                let is_crowded = shorter.len() > MOST_AT_NODE;
+                let around = if is_crowded {
+                    around_edge.of_edge(ends)
+                } else {
+                    shorter
+                };
                 let others = around.iter().filter(|&&other| other != element);
                 let mut others = others.filter_map(|&other| {
                     Some((other, goes_along(&corners_of[other as usize], ends)?))
                 });
-                if around.len() > MOST_AT_NODE {
+                if is_crowded && around.len() <= MOST_AT_EDGE {
                     found.extend(others.clone().map(|(other, _)| other));
                 }
                 let across = others.find(|(other, _)| has_area(*other));
@@ -351,6 +360,52 @@ impl Chunk {
         }
         links
     }
+}
+
+/// The elements at each edge between two nodes of more than [`MOST_AT_NODE`] elements, those with an area first.
+struct CrowdedEdges {
+    /// The ends of each edge, the smaller one first, once for every element at it.
+    ends: Vec<[u32; 2]>,
+    elements: Vec<u32>,
+}
+
+impl CrowdedEdges {
+    fn of(
+        corners_of: &[[u32; 4]],
+        around_node: &Lists,
+        has_area: impl Fn(u32) -> bool,
+        monitor: &Monitor,
+    ) -> Result<Self, Cancelled> {
+        let is_crowded = |node: u32| around_node.of(node as usize).len() > MOST_AT_NODE;
+        let mut found = Vec::new();
+        for_chunks(corners_of.len(), monitor, |range| {
+            for element in range {
+                let corners = &corners_of[element];
+                for [i, j] in edges(corners) {
+                    let ends = sorted([corners[i], corners[j]]);
+                    if ends.into_iter().all(is_crowded) {
+                        found.push((ends, !has_area(element as u32), element as u32));
+                    }
+                }
+            }
+        })?;
+        found.sort_unstable();
+        Ok(Self {
+            ends: found.iter().map(|(ends, ..)| *ends).collect(),
+            elements: found.iter().map(|(.., element)| *element).collect(),
+        })
+    }
+
+    fn of_edge(&self, ends: [u32; 2]) -> &[u32] {
+        let ends = sorted(ends);
+        let first = self.ends.partition_point(|other| *other < ends);
+        let n = self.ends[first..].partition_point(|other| *other == ends);
+        &self.elements[first..first + n]
+    }
+}
+
+fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
 }
 
 /// Whether an element goes along an edge from its first end to its second; `None` if it has no such edge.
@@ -372,8 +427,8 @@ pub struct Neighbours {
 }
 
 impl Neighbours {
-    /// Elements that share a node with `element`, in rising order; of a node with more than 1024 elements those that
-    /// share an edge.
+    /// Elements that share a node with `element`, in rising order; of a node with more than 128 elements those that
+    /// share an edge, unless many do.
     pub fn of(&self, element: usize) -> &[u32] {
         self.lists.of(element)
     }
@@ -467,6 +522,22 @@ mod tests {
             assert_eq!(links.border_edges[element as usize], 0b010);
         }
         assert!(!links.is_border_node(0) && links.is_border_node(1));
+    }
+
+    #[test]
+    fn where_many_elements_share_an_edge_none_of_them_are_neighbours() {
+        let n = 20_000_u32;
+        let mut positions = vec![Point3::origin(), Point3::new(0.0, 0.0, 10.0)];
+        positions.extend((0..n).map(|i| {
+            let angle = std::f64::consts::TAU * f64::from(i) / f64::from(n);
+            Point3::new(1000.0 * angle.cos(), 1000.0 * angle.sin(), 5.0)
+        }));
+        let corners = (0..n).map(|i| [0, 1, 2 + i, 2 + i]);
+        let mesh = ShellMesh::new(positions, corners.collect(), vec![0; n as usize]).unwrap();
+        let links = mesh.links(&Monitor::silent()).unwrap();
+        assert!(links.neighbours.lists.items.is_empty());
+        // Their common edge is no border.
+        assert!(links.border_edges.iter().all(|&bits| bits == 0b110));
     }
 
     #[test]

@@ -11,8 +11,13 @@ use crate::geometry::Vector3;
 
 /// Neighbours whose normals differ by more than 40° are beyond an edge of the sheet: cosine of that angle.
 pub(super) const LEAST_BEND_COS: f64 = 0.766_044_443_118_978;
-/// A jump in thickness by more than this fraction is a weld line between two gauges.
+/// A jump in thickness by more than this fraction is a weld line between two gauges, …
 const WELD_LINE_JUMP: f64 = 0.05;
+/// … if it is more than so many times the change to the next element on either side: beside a weld line the thickness
+/// hardly changes, while thinning grows and falls from element to element.
+const JUMP_OVER_SLOPE: f64 = 3.0;
+/// The next element lies ahead within this angle (37°), given as its cosine.
+const AHEAD_COS: f64 = 0.8;
 
 /// A neighbour in the fit of an element.
 #[derive(Debug, Clone, Copy)]
@@ -127,7 +132,7 @@ impl Patch {
         for &other in neighbours.of(element) {
             let n = other as usize;
             if cos_between(mesh, neighbours, element, n) < LEAST_BEND_COS
-                || is_weld_line(mesh, thickness, element, n)
+                || is_weld_line((mesh, neighbours, thickness), element, n)
             {
                 continue;
             }
@@ -265,11 +270,36 @@ pub(super) fn cos_between(mesh: &ShellMesh, neighbours: &Neighbours, a: usize, b
     neighbours.seen_cos(a, b, mesh.normals()[a].dot(&mesh.normals()[b]))
 }
 
-/// True if the gauge of the sheet changes between two neighbours, or the part.
-pub(super) fn is_weld_line(mesh: &ShellMesh, thickness: &[f64], a: usize, b: usize) -> bool {
-    let is_jump = match (thickness.get(a), thickness.get(b)) {
-        (Some(a), Some(b)) => (a - b).abs() > WELD_LINE_JUMP * a.min(*b),
-        _ => false,
+/// True if the gauge of the sheet changes between two neighbours, or the part. `thickness` may be empty.
+pub(super) fn is_weld_line(
+    (mesh, neighbours, thickness): (&ShellMesh, &Neighbours, &[f64]),
+    a: usize,
+    b: usize,
+) -> bool {
+    if mesh.parts()[a] != mesh.parts()[b] {
+        return true;
+    }
+    let (Some(own), Some(other)) = (thickness.get(a), thickness.get(b)) else {
+        return false;
     };
-    is_jump || mesh.parts()[a] != mesh.parts()[b]
+    let jump = (own - other).abs();
+    if jump <= WELD_LINE_JUMP * own.min(*other) {
+        return false;
+    }
+    // The largest change from an element to one that lies on, away from the jump.
+    let change = |from: usize, away: usize| {
+        let centre = mesh.centroids()[from];
+        let ahead = centre - mesh.centroids()[away];
+        let lies_ahead = |&next: &usize| {
+            let to_next = mesh.centroids()[next] - centre;
+            to_next.dot(&ahead) > AHEAD_COS * to_next.norm() * ahead.norm()
+                && mesh.parts()[next] == mesh.parts()[from]
+        };
+        let next = neighbours.of(from).iter().map(|&next| next as usize);
+        let changes = next
+            .filter(lies_ahead)
+            .map(|next| (thickness[next] - thickness[from]).abs());
+        changes.fold(0.0, f64::max)
+    };
+    jump > JUMP_OVER_SLOPE * change(a, b).max(change(b, a))
 }

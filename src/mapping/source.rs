@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::field::{Field, Fields};
 use super::history::SourceHistory;
 use super::layered::{AtLayers, Layered, PLASTIC_STRAIN, PerElement};
-use super::layers::{LayerBalance, LayerMatrix};
+use super::layers::LayerBalance;
 use super::links::{Links, Neighbours};
 use super::options::MapOptions;
 use super::patch::{Patch, is_weld_line};
@@ -21,6 +21,9 @@ use crate::search::{Bvh, ClosestPoint, Feature, Nearby, NormalFilter, SurfaceHit
 const SMALLEST_GAUGE: f64 = 0.01;
 /// Elements of one gauge that are found between two questions to the monitor.
 const CHECKED_AFTER: usize = 1 << 14;
+/// Matrices between rules of the source and rules of the target are made beforehand if there are no more than these;
+/// where every element has rules of its own they would take memory by the square of them.
+const MOST_MATRICES: usize = 4096;
 
 /// A stamped part with its forming results, in its own frame.
 #[derive(Debug, Clone)]
@@ -128,19 +131,16 @@ impl<'a> PreparedSource<'a> {
         let ((bvh, triangle_element), (links, gauge)) = (of_tree?, of_links?);
         monitor.check()?;
         let states = if options.quantities.needs_states() && part.states.n_present() > 0 {
-            let at = |rule| states_at(part, rule, options.stress_balance());
-            rules.iter().map(at).collect()
+            // Plastic strains are always linear.
+            let mut balances = [options.stress_balance(); 7];
+            balances[PLASTIC_STRAIN] = LayerBalance::Linear;
+            at_layers(&part.states, rules, balances)
         } else {
             Vec::new()
         };
         monitor.check()?;
         let strains = if options.quantities.strain && part.strains.n_present() > 0 {
-            let at = |rule: &LayerRule| {
-                let linear = |from: &LayerRule| LayerMatrix::new(from, rule, LayerBalance::Linear);
-                let matrices = |from: &LayerRule| std::array::from_fn(|_| linear(from));
-                part.strains.at_layers(rule, matrices)
-            };
-            strain_rules.iter().map(at).collect()
+            at_layers(&part.strains, strain_rules, [LayerBalance::Linear; 6])
         } else {
             Vec::new()
         };
@@ -435,19 +435,15 @@ fn is_uneven(corners: &[f64; 4]) -> bool {
     mean.is_finite() && corners.iter().any(|t| (t - mean).abs() > 1e-9 * mean)
 }
 
-/// Stresses by the chosen balance, plastic strains always linear.
-fn states_at<'a>(part: &'a SourcePart, rule: &LayerRule, balance: LayerBalance) -> AtLayers<'a, 7> {
-    part.states.at_layers(rule, |from| {
-        let stress = LayerMatrix::new(from, rule, balance);
-        let plastic = LayerMatrix::new(from, rule, LayerBalance::Linear);
-        std::array::from_fn(|i| {
-            if i < 6 {
-                stress.clone()
-            } else {
-                plastic.clone()
-            }
-        })
-    })
+/// Values at each of the rules of a target.
+fn at_layers<'a, const N: usize>(
+    values: &'a Layered<N>,
+    rules: &[LayerRule],
+    balances: [LayerBalance; N],
+) -> Vec<AtLayers<'a, N>> {
+    let keeps_matrices = values.rules().len() * rules.len() <= MOST_MATRICES;
+    let at = |rule| values.at_layers(rule, balances, keeps_matrices);
+    rules.iter().map(at).collect()
 }
 
 /// Numbers the sheets of one gauge: elements that are linked by smooth neighbours. A small island as a whole
@@ -479,7 +475,9 @@ fn gauges(
             areas[number as usize] += mesh.areas()[element];
             for &other in neighbours.of(element) {
                 let other = other as usize;
-                if gauge[other] == u32::MAX && !is_weld_line(mesh, thickness, element, other) {
+                if gauge[other] == u32::MAX
+                    && !is_weld_line((mesh, neighbours, thickness), element, other)
+                {
                     gauge[other] = number;
                     waiting.push(other);
                 }

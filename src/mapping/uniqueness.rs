@@ -6,6 +6,8 @@ use super::source::PreparedSource;
 
 /// A second sheet whose distance makes the first more than this share of it is as good a partner.
 pub(super) const AMBIGUOUS_RATIO: f64 = 0.7;
+/// Where more elements than these lie between, two are taken for one sheet.
+const MOST_SEEN: usize = 400;
 
 impl Context<'_> {
     /// 1 without a second compatible sheet within reach; else 2 · (1 − d₁/d₂), at most 1.
@@ -60,9 +62,9 @@ impl PreparedSource<'_> {
                 if is_near && !seen.contains(&other) {
                     seen.push(other);
                 }
-            }
-            if seen.len() > 400 {
-                return true;
+                if seen.len() > MOST_SEEN {
+                    return true;
+                }
             }
         }
         false

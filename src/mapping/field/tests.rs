@@ -112,6 +112,33 @@ fn a_weld_line_is_no_slope() {
 }
 
 #[test]
+fn thinning_is_no_weld_line_however_steep() {
+    let mesh = sheet(12);
+    // Up to 14 % from one element to the next.
+    let neck = |p: &Point3| 1.0 - 0.4 * (-((p.x - 6.0) / 2.0).powi(2)).exp();
+    let thickness = scalars(&mesh, neck);
+    let slopes = |gauge: &[f64]| {
+        let field = fitted(&mesh, &thickness, gauge).thickness.unwrap();
+        field.gradients.concat().concat()
+    };
+    let pairs = slopes(&thickness).into_iter().zip(slopes(&[]));
+    let apart = pairs.fold(0.0_f64, |apart, (own, all)| apart.max((own - all).abs()));
+    // Where the neck begins a neighbour may be left out.
+    assert!(apart < 0.02, "{apart}");
+}
+
+#[test]
+fn a_weld_line_is_seen_where_both_gauges_have_thinned() {
+    let mesh = sheet(8);
+    let gauge = |p: &Point3| if p.x > 4.0 { 1.2 } else { 1.0 };
+    let thickness = scalars(&mesh, |p| gauge(p) * (1.0 - 0.02 * p.x));
+    let field = fitted(&mesh, &thickness, &thickness).thickness.unwrap();
+    let slopes = field.gradients.iter().flatten().flatten();
+    let steepest = slopes.fold(0.0_f64, |steepest, slope| steepest.max(slope.abs()));
+    assert!(steepest < 0.04, "{steepest}");
+}
+
+#[test]
 fn points_of_a_layer_are_averaged_and_layers_sorted() {
     let mut layered = Layered::<1>::new(3);
     let points = [
