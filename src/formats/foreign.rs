@@ -37,6 +37,8 @@ pub enum Foreign {
     OtherMesh,
     /// A project of this program.
     Project,
+    /// A record of a match, a mapping or another work of this program.
+    Record,
     /// Any other binary file.
     Binary,
     /// Text with lines that begin with `*` and none of LS-DYNA's keywords.
@@ -69,6 +71,7 @@ impl Foreign {
         Self::Lsda,
         Self::OtherMesh,
         Self::Project,
+        Self::Record,
         Self::Binary,
         Self::NoKeyword,
         Self::Text,
@@ -120,6 +123,10 @@ impl Foreign {
                 EXPORT,
             ),
             Self::Project => ("a shapematch project", "open it by itself, not as a part"),
+            Self::Record => (
+                "a JSON record of shapematch",
+                "give the decks themselves; the record names them",
+            ),
             Self::Binary => (
                 "binary and neither STL nor PLY",
                 "check that it is the right file and was transferred unchanged",

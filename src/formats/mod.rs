@@ -27,7 +27,7 @@ pub use file_bytes::FileBytes;
 pub use foreign::Foreign;
 pub use hash::{FileHash, HashError};
 pub use model::{Model, PartSummary, Selection, SelectionError, Surface};
-pub use source::{Disk, FileSource, Memory, Replaced};
+pub use source::{CheckedSource, Disk, FileSource, FileStamp, Memory, Replaced};
 
 use crate::monitor::{Cancelled, Monitor};
 

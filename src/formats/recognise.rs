@@ -20,6 +20,8 @@ const MAGIC: &[(&[u8], Foreign)] = &[
     (b"\xfd7zXZ\0", Foreign::Packed),
     (b"\x28\xb5\x2f\xfd", Foreign::Packed),
     (b"BZh", Foreign::Packed),
+    // Within gzip data.
+    (b"\x1f\x8b", Foreign::Packed),
     (b"7z\xbc\xaf\x27\x1c", Foreign::Packed),
     (b"\x1f\x9d", Foreign::Packed),
     (b"\x89HDF\r\n\x1a\n", Foreign::OtherMesh),
@@ -202,8 +204,12 @@ fn foreign_text(head: &[u8]) -> Option<Foreign> {
     if begins("<!doctype html") || begins("<html") || begins("<head") {
         return Some(Foreign::Html);
     }
-    if begins("{") && memmem::find(&start, b"shapematch").is_some() {
+    let holds = |word: &[u8]| begins("{") && memmem::find(&start, word).is_some();
+    if holds(b"\"shapematch.project/") {
         return Some(Foreign::Project);
+    }
+    if holds(b"\"shapematch.") {
+        return Some(Foreign::Record);
     }
     // Columns 73 to 80 of an IGES file: section letter and number.
     let line = head.split(|&b| b == b'\n').next()?.trim_ascii_end();

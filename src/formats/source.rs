@@ -9,6 +9,8 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufRead, Read};
 use std::path::{Component, Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::time::SystemTime;
 
 use flate2::bufread::GzDecoder;
 use rayon::prelude::*;
@@ -58,6 +60,82 @@ pub trait FileSource: Send + Sync {
     fn other_than_file(&self, _path: &Path) -> Option<&'static str> {
         None
     }
+
+    /// What tells that a file was written to; `None` where that is not known.
+    fn stamp(&self, _path: &Path) -> Option<FileStamp> {
+        None
+    }
+}
+
+/// Length and time of the last change of a file: the same as long as nothing is written to it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FileStamp {
+    n_bytes: u64,
+    changed: Option<SystemTime>,
+}
+
+impl From<std::fs::Metadata> for FileStamp {
+    fn from(metadata: std::fs::Metadata) -> Self {
+        Self {
+            n_bytes: metadata.len(),
+            changed: metadata.modified().ok(),
+        }
+    }
+}
+
+/// Another source, with the stamps of the files when they were first read.
+pub struct CheckedSource<'a> {
+    source: &'a dyn FileSource,
+    stamps: Mutex<BTreeMap<PathBuf, Option<FileStamp>>>,
+}
+
+impl<'a> CheckedSource<'a> {
+    /// Nothing is read yet.
+    pub fn new(source: &'a dyn FileSource) -> Self {
+        Self {
+            source,
+            stamps: Mutex::default(),
+        }
+    }
+
+    /// An error if a file was written to since it was first read here.
+    pub fn check(&self, path: &Path) -> io::Result<()> {
+        let stamps = self.stamps.lock().unwrap_or_else(PoisonError::into_inner);
+        match stamps.get(path) {
+            Some(first) if *first != self.source.stamp(path) => Err(changed()),
+            _ => Ok(()),
+        }
+    }
+
+    fn note(&self, path: &Path) {
+        let mut stamps = self.stamps.lock().unwrap_or_else(PoisonError::into_inner);
+        let first = stamps.entry(path.to_path_buf());
+        first.or_insert_with(|| self.source.stamp(path));
+    }
+}
+
+impl FileSource for CheckedSource<'_> {
+    fn open(&self, path: &Path, max_bytes: u64, monitor: &Monitor) -> io::Result<FileBytes> {
+        self.note(path);
+        self.source.open(path, max_bytes, monitor)
+    }
+
+    fn stream(&self, path: &Path) -> io::Result<Box<dyn Read + '_>> {
+        self.note(path);
+        self.source.stream(path)
+    }
+
+    fn find(&self, path: &Path) -> Option<PathBuf> {
+        self.source.find(path)
+    }
+
+    fn other_than_file(&self, path: &Path) -> Option<&'static str> {
+        self.source.other_than_file(path)
+    }
+
+    fn stamp(&self, path: &Path) -> Option<FileStamp> {
+        self.source.stamp(path)
+    }
 }
 
 /// The real disk.
@@ -91,8 +169,7 @@ impl FileSource for Disk {
             return read_stream(file, max_bytes, monitor);
         }
         let bytes = read_whole(&file, before.len(), max_bytes, monitor)?;
-        let after = file.metadata()?;
-        if (after.len(), after.modified().ok()) != (before.len(), before.modified().ok()) {
+        if FileStamp::from(file.metadata()?) != FileStamp::from(before) {
             return Err(changed());
         }
         Ok(bytes)
@@ -116,6 +193,12 @@ impl FileSource for Disk {
                 .is_ok()
                 .then_some("a link that leads nowhere"),
         }
+    }
+
+    fn stamp(&self, path: &Path) -> Option<FileStamp> {
+        // Files of a system's own making have a new time whenever they are asked for it.
+        let metadata = std::fs::metadata(path).ok().filter(|m| m.len() > 0);
+        metadata.map(FileStamp::from)
     }
 }
 
@@ -389,6 +472,13 @@ impl FileSource for Replaced<'_> {
 
     fn other_than_file(&self, path: &Path) -> Option<&'static str> {
         self.others.other_than_file(path)
+    }
+
+    fn stamp(&self, path: &Path) -> Option<FileStamp> {
+        match self.of(path) {
+            Some(_) => None,
+            None => self.others.stamp(path),
+        }
     }
 }
 

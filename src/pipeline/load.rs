@@ -12,8 +12,8 @@ use super::id_map::{IdMap, Origins};
 use super::names::file_name;
 use super::{PipelineError, millis_since};
 use crate::formats::{
-    self, Diagnostic, Diagnostics, Disk, FileHash, FileSource, Memory, Model, ReadOptions,
-    Selection, SelectionError, Severity,
+    self, CheckedSource, Diagnostic, Diagnostics, Disk, FileHash, FileSource, FormatError, Memory,
+    Model, ReadOptions, Selection, SelectionError, Severity,
 };
 use crate::geometry::chunks::for_chunks;
 use crate::geometry::{CleanMesh, MeshError, Point3, TriMesh};
@@ -343,19 +343,23 @@ pub fn load_from(
     monitor: &Monitor,
 ) -> Result<LoadedPart, PipelineError> {
     let start = Instant::now();
+    let checked = CheckedSource::new(source);
     let (model, hash) = rayon::join(
-        || formats::read_from(source, path, &settings.read, monitor),
+        || formats::read_from(&checked, path, &settings.read, monitor),
         || FileHash::of_file(source, path, monitor),
     );
     let mut model = model?;
-    model.files.par_iter_mut().for_each(|file| {
-        let of_include = || FileHash::of_file(source, &file.path, monitor);
-        file.hash = if file.path == path {
-            hash.as_ref().ok().copied()
-        } else {
-            of_include().ok()
+    let hashed = model.files.par_iter_mut().try_for_each(|file| {
+        let hash = match &hash {
+            Ok(hash) if file.path == path => Ok(*hash),
+            _ => FileHash::of_file(source, &file.path, monitor),
         };
+        // Behind the hash, so that it is that of what was read.
+        let hash = hash.and_then(|hash| checked.check(&file.path).map(|()| hash));
+        file.hash = Some(hash.map_err(|error| FormatError::open(&file.path, &error))?);
+        Ok::<(), FormatError>(())
     });
+    hashed?;
     let read_ms = millis_since(start);
     monitor.shape(|| shape(&model, settings.length_factor));
     let mut part = prepare(path, Arc::new(model), settings, monitor)?;

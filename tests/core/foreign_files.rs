@@ -116,6 +116,11 @@ fn examples() -> Vec<(&'static str, Vec<u8>, Foreign)> {
             "{\"schema\": \"shapematch.project/1\"}",
             Foreign::Project,
         ),
+        text(
+            "a.json",
+            "{\n  \"schema\": \"shapematch.match/3\",",
+            Foreign::Record,
+        ),
         ("a.bin", [0u8, 1, 2, 3, 200].repeat(100), Foreign::Binary),
         text("a.k", "*NODES\n1,0,0,0\n*WHAT\n", Foreign::NoKeyword),
         text("a.txt", "a letter\nto somebody\n", Foreign::Text),

@@ -918,6 +918,51 @@ fn nodes_that_lie_off_the_mid_surface_are_told() {
     }
 }
 
+/// Rows of ranges with steps, and of sets, beside a plain loop over all of them; ids of nodes with and without gaps.
+#[test]
+fn the_last_row_that_names_a_node_gives_its_thickness() {
+    for gap in [1, 7] {
+        let ids: Vec<u64> = (0..40).map(|k| 3 + gap * k).collect();
+        let mut deck = "*NODE\n".to_owned();
+        for (k, id) in ids.iter().enumerate() {
+            deck += &format!("{id},{k}.,{}.,0.\n", k % 2);
+        }
+        deck += "*ELEMENT_SHELL\n";
+        for (shell, nodes) in ids.windows(3).enumerate() {
+            let [a, b, c] = nodes else { unreachable!() };
+            deck += &format!("{},1,{a},{b},{c},{c}\n", shell + 1);
+        }
+        deck += &format!("*SET_NODE_LIST\n5\n{},{},{}\n", ids[4], ids[9], ids[33]);
+        let mut expected = vec![0.0; ids.len()];
+        for row in 0..24_u64 {
+            let thickness = 1.0 + row as f64;
+            if row % 8 == 3 {
+                deck += &format!("*NODE_THICKNESS_SET\n5,{thickness}\n");
+                [4, 9, 33]
+                    .into_iter()
+                    .for_each(|node| expected[node] = thickness);
+                continue;
+            }
+            let step = [1, 2, 3, 7, 14, 40][row as usize % 6];
+            let (first, last) = (1 + 11 * row % 97, 60 + 37 * row % 251);
+            deck += &format!("*NODE_THICKNESS_GENERATE\n{first},{thickness},{last},{step}\n");
+            for (id, expected) in ids.iter().zip(&mut expected) {
+                let is_range = last > first;
+                let is_named = (first..=last).contains(id) && (id - first).is_multiple_of(step);
+                if *id == first || is_range && is_named {
+                    *expected = thickness;
+                }
+            }
+        }
+        let model = read_text(deck + "*END\n");
+        for (shell, expected) in expected.windows(3).enumerate() {
+            let extra = model.shell_extra(shell as u32);
+            let found = extra.map_or([0.0; 4], |extra| extra.thickness);
+            assert_eq!(&found[..3], expected, "gap {gap}, shell {shell}");
+        }
+    }
+}
+
 #[test]
 fn folders_of_includes_are_read_as_file_names_are() {
     let shell = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n*ELEMENT_SHELL\n1,1,1,2,3\n";

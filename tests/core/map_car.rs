@@ -3,10 +3,16 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde_json::Value;
-use shapematch::formats::{Model, ReadOptions, read};
-use shapematch::monitor::Monitor;
+use shapematch::formats::{Model, ReadOptions, Selection, read};
+use shapematch::monitor::{Monitor, Observer};
+use shapematch::pipeline::load::{LoadSettings, load};
+use shapematch::pipeline::map::{DefaultThickness, MapRecipe};
+use shapematch::pipeline::map_car::{CarReason, CarRecipe, StampedFile, map_car};
+use shapematch::pipeline::match_parts::MatchRecipe;
 
 /// A car of five parts, with the stamped parts of two of them, one that belongs to no part, and a file that is
 /// none.
@@ -294,6 +300,57 @@ fn two_stamped_parts_in_one_place_are_told() {
     std::fs::copy(car.path(CRASH), car.path("mapped/stamped.k")).unwrap();
     let refused = car.run(&["map-car", "mapped/stamped.k", STAMPED[1], "--out", "mapped"]);
     assert_eq!(refused.status.code(), Some(2), "{}", errors(&refused));
+}
+
+/// Changes a file as soon as it was read for the first time.
+struct ChangesFile {
+    deck: PathBuf,
+    is_changed: AtomicBool,
+}
+
+impl Observer for ChangesFile {
+    fn shape(&self, _points: Vec<[f64; 3]>) {
+        if self.is_changed.swap(true, Ordering::Relaxed) {
+            return;
+        }
+        let text = std::fs::read_to_string(&self.deck).unwrap();
+        std::fs::write(&self.deck, format!("$ another one\n{text}")).unwrap();
+    }
+}
+
+#[test]
+fn a_file_that_changes_before_it_is_mapped_is_not_mapped_with_the_pose_of_what_it_was() {
+    let car = Car::new();
+    let observer = ChangesFile {
+        deck: car.path("bracket/stamped.dynain"),
+        is_changed: AtomicBool::new(false),
+    };
+    let monitor = Monitor::silent();
+    let crash = load(&car.path(CRASH), &LoadSettings::default(), &monitor).unwrap();
+    let stamped = StampedFile {
+        path: observer.deck.clone(),
+        settings: LoadSettings {
+            selection: Selection::Sheet,
+            ..LoadSettings::default()
+        },
+        stress_factor: None,
+    };
+    let recipe = CarRecipe {
+        matching: MatchRecipe::default(),
+        map: MapRecipe::default(),
+        is_large: false,
+        default_thickness: DefaultThickness::default(),
+        folder: car.folder.path().to_path_buf(),
+        has_pages: false,
+    };
+    let monitor = Monitor::with_observer(Arc::new(observer));
+    let record = map_car(&crash, &[stamped], &recipe, &monitor).unwrap();
+    let failed = |reason: &CarReason| match reason {
+        CarReason::Failed(why) => why.contains("has changed since it was read"),
+        _ => false,
+    };
+    assert!(record.rows[0].reasons.iter().any(failed), "{record:?}");
+    assert!(record.rows[0].files.is_empty());
 }
 
 #[test]

@@ -548,8 +548,10 @@ fn wide_decks_get_wide_cards() {
         expected += "*END\n";
         assert!(written.ends_with(&expected), "{keyword}{written}");
         assert_eq!(model(&pair.path("out.k")).forming.n_stress(), 2);
-        let include = pair.written(&[]);
-        assert!(include.starts_with(keyword), "{include}");
+        for quantities in ["full", "plastic,stress"] {
+            let include = pair.written(&["--quantities", quantities]);
+            assert!(include.starts_with(keyword), "{quantities}: {include}");
+        }
     }
 }
 

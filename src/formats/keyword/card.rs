@@ -22,7 +22,7 @@ pub const EIGHT_BY_10: &[u8] = &[10; 8];
 pub const FIVE_BY_16: &[u8] = &[16; 5];
 
 /// How wide the fields of a card are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Hash)]
 pub enum Layout {
     /// Fields of 8, 10 and 16 columns.
     #[default]
@@ -34,6 +34,15 @@ pub enum Layout {
 }
 
 impl Layout {
+    /// The narrowest whose fields hold an id on every card.
+    pub fn holding(id: u64) -> Self {
+        match id {
+            0..=99_999_999 => Self::Standard,
+            100_000_000..=9_999_999_999 => Self::I10,
+            _ => Self::Long,
+        }
+    }
+
     /// The width of a field whose standard width is given.
     #[inline]
     pub fn width(self, standard: u8) -> usize {

@@ -48,7 +48,7 @@ pub(crate) fn read_opened(
         monitor,
         search: SearchPath {
             master,
-            folders: Vec::new(),
+            ..SearchPath::default()
         },
         options,
         parameters: ParameterTable::new(),
@@ -238,7 +238,7 @@ impl Reader<'_> {
     /// Everything that is neither mesh, include nor parameter.
     fn other(&mut self, file: &Arc<SourceFile>, block: &Block<'_>, context: &Context) {
         let name = block.name.as_str();
-        let assembly = &mut self.assembly;
+        let (assembly, monitor) = (&mut self.assembly, self.monitor);
         let block = &Block {
             parameters: Some(&self.parameters),
             ..block.clone()
@@ -282,7 +282,7 @@ impl Reader<'_> {
         } else if is_forming(name) {
             let units = context.results();
             let (into, found) = (&mut assembly.forming, &mut assembly.found);
-            found.beside_geometry(|found| read_block(file, block, units, into, found));
+            found.beside_geometry(|found| read_block(file, block, units, into, found, monitor));
         } else if name.starts_with("MAT_") {
             assembly.unit_clues.read_material(block, context);
             assembly.materials.extend(read_material(block, context));
@@ -316,14 +316,14 @@ impl Reader<'_> {
                 }
             }
             name @ ("INCLUDE_PATH" | "INCLUDE_PATH_RELATIVE") => {
-                let start = if name == "INCLUDE_PATH" {
-                    PathBuf::new()
-                } else {
-                    self.search.master.clone()
-                };
                 for path in read_paths(block) {
-                    let path = start.join(&*self.parameters.substitute(&path));
-                    self.search.folders.push(path);
+                    let path = self.parameters.substitute(&path);
+                    let path = Path::new(&*path);
+                    if name == "INCLUDE_PATH" {
+                        self.search.add_folder(path);
+                    } else {
+                        self.search.add_relative_folder(path);
+                    }
                 }
             }
             _ => {
@@ -431,6 +431,7 @@ impl Reader<'_> {
                     Some(what) => format!("is {what}, not a file"),
                     None => format!("is not found; tried {}", search.tried(folder, &name)),
                 };
+                self.search.n_tried += search.n_places(&name);
                 Err((DiagnosticKind::MissingInclude, what))
             }
         };

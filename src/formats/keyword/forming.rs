@@ -1,13 +1,15 @@
 //! Results of a forming simulation: `*INITIAL_STRESS_SHELL` and `*INITIAL_STRAIN_SHELL`, also for
 //! sets; those of solids and thick shells are read past and counted.
 
+mod cards;
 mod checks;
 mod lines;
 
 use std::iter::Peekable;
-use std::ops::Range;
 use std::sync::Arc;
 
+pub use self::cards::ResultCards;
+pub(crate) use self::cards::result_cards;
 use self::lines::{LARGE, Lines, SMALL, SMALL_TENSOR};
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
 use super::super::model::{Forming, StrainPoint, StressPoint};
@@ -17,10 +19,13 @@ use super::nodes::shifted;
 use super::resolve::with_position;
 use super::source_file::{Place, SourceFile};
 use crate::geometry::tensor::Tensor;
+use crate::monitor::Monitor;
 
 /// More points or history variables than any solver writes for one shell; such a count means that
 /// the cards are out of step.
 const MAX_COUNT: i64 = 10_000;
+/// Elements that are read between two questions to the monitor.
+const CHECKED_AFTER: usize = 1024;
 
 /// What an include does to the results in it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,13 +84,14 @@ impl Results {
 
 /// Reads one `*INITIAL_STRESS_…` or `*INITIAL_STRAIN_…` block. Results of beams and others that
 /// are not understood are named and left out. An element that cannot be read is named and left
-/// out; counts that make no sense end the block.
+/// out; counts that make no sense end the block, and so does a cancel request.
 pub(crate) fn read_block(
     file: &Arc<SourceFile>,
     block: &Block<'_>,
     units: ResultUnits,
     into: &mut RawForming,
     diagnostics: &mut Diagnostics,
+    monitor: &Monitor,
 ) {
     let Some(results) = Results::of_keyword(&block.name) else {
         if is_forming(&block.name) {
@@ -96,7 +102,12 @@ pub(crate) fn read_block(
         return;
     };
     let mut reader = Reader::new(block, units, diagnostics);
+    let mut n_read = 0_usize;
     while let Some(card) = reader.next_card() {
+        n_read += 1;
+        if n_read.is_multiple_of(CHECKED_AFTER) && monitor.check().is_err() {
+            return;
+        }
         if card.is_blank() {
             continue;
         }
@@ -127,60 +138,6 @@ pub(crate) fn read_block(
             return;
         }
     }
-}
-
-/// The cards of the stresses or strains of one shell, or of one set of shells.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ResultCards {
-    /// Stresses, not strains.
-    pub is_stress: bool,
-    /// Those of a set of shells.
-    pub is_of_set: bool,
-    /// Id of the shell or the set in the whole deck.
-    pub id: u64,
-    /// Where they stand in the file, from the first card to the end of the last.
-    pub range: Range<usize>,
-}
-
-/// Finds the cards of each shell and each set in a block of their results; none in blocks of others. `Err`
-/// is where a card stands that is out of step.
-pub(crate) fn result_cards(
-    block: &Block<'_>,
-    units: ResultUnits,
-) -> Result<Vec<ResultCards>, usize> {
-    let (is_stress, is_of_set) = match Results::of_keyword(&block.name) {
-        Some(Results::Stress) => (true, false),
-        Some(Results::Strain) => (false, false),
-        Some(Results::SetStress) => (true, true),
-        Some(Results::SetStrain) => (false, true),
-        _ => return Ok(Vec::new()),
-    };
-    // What cannot be read was told when the deck was read.
-    let mut told = Diagnostics::default();
-    let mut reader = Reader::new(block, units, &mut told);
-    let mut found = Vec::new();
-    while let Some(card) = reader.next_card() {
-        if card.is_blank() {
-            continue;
-        }
-        let mut values = Forming::default();
-        let read = if is_stress {
-            reader.stress(&card, 0, &mut values)
-        } else {
-            reader.strain(&card, 0, &mut values)
-        };
-        let offset = if is_of_set { units.set } else { units.element };
-        match (read, card.required_id(EIGHT_BY_10, 0)) {
-            (Ok(()), Ok(id)) => found.push(ResultCards {
-                is_stress,
-                is_of_set,
-                id: shifted(id, offset),
-                range: card.offset()..reader.after,
-            }),
-            _ => return Err(card.offset()),
-        }
-    }
-    Ok(found)
 }
 
 /// True for keywords that carry results of an earlier simulation.

@@ -303,8 +303,12 @@ fn file_name(cards: &mut Cards<'_>) -> Option<(String, usize)> {
     Some((unquoted.unwrap_or(name).to_owned(), at?))
 }
 
-/// A longer name is no file's.
+/// A longer name, or one in more folders, is no file's.
 const LONGEST_NAME: usize = 4096;
+const MOST_FOLDERS: usize = 64;
+/// After so many places without a file, further ones are looked for near the deck alone: a short deck may name
+/// thousands of files and folders that are not there.
+const MOST_TRIED: usize = 50_000;
 
 /// Where included files are looked for.
 #[derive(Debug, Clone, Default)]
@@ -313,9 +317,42 @@ pub(crate) struct SearchPath {
     pub master: PathBuf,
     /// `*INCLUDE_PATH` and `*INCLUDE_PATH_RELATIVE` in the order of the deck, then the options'.
     pub folders: Vec<PathBuf>,
+    /// Places where files that are not there were looked for.
+    pub n_tried: usize,
 }
 
 impl SearchPath {
+    /// A folder of `*INCLUDE_PATH`, which the solver takes from where it runs. That is seldom where this program does,
+    /// and mostly the folder of the deck.
+    pub(crate) fn add_folder(&mut self, folder: &Path) {
+        self.folders.push(folder.to_path_buf());
+        if folder.is_relative() && !self.master.as_os_str().is_empty() {
+            self.add_relative_folder(folder);
+        }
+    }
+
+    /// A folder of `*INCLUDE_PATH_RELATIVE`.
+    pub(crate) fn add_relative_folder(&mut self, folder: &Path) {
+        self.folders.push(self.master.join(folder));
+    }
+
+    /// The number of places where a name is looked for.
+    pub(crate) fn n_places(&self, name: &str) -> usize {
+        self.names(name).len() * (2 + self.folders.len())
+    }
+
+    fn is_exhausted(&self) -> bool {
+        self.n_tried >= MOST_TRIED
+    }
+
+    fn names(&self, name: &str) -> Vec<String> {
+        let mut names = names_of(name);
+        if self.is_exhausted() {
+            names.truncate(2);
+        }
+        names
+    }
+
     /// The file that `name` means in a file of `folder`: as given, beside the including file,
     /// beside the master, in the folders; then the same with Windows separators, and with ever
     /// fewer of its leading folders, because decks carry the paths of the machine they come from
@@ -326,7 +363,7 @@ impl SearchPath {
         folder: &Path,
         name: &str,
     ) -> Option<PathBuf> {
-        names_of(name).into_iter().find_map(|name| {
+        self.names(name).into_iter().find_map(|name| {
             let name = Path::new(&name);
             if name.is_absolute() {
                 return source.find(name);
@@ -343,7 +380,7 @@ impl SearchPath {
         folder: &Path,
         name: &str,
     ) -> Option<&'static str> {
-        names_of(name).into_iter().find_map(|name| {
+        self.names(name).into_iter().find_map(|name| {
             let mut folders = self.folders(folder);
             folders.find_map(|folder| source.other_than_file(&tidy(&folder.join(&name))))
         })
@@ -352,8 +389,10 @@ impl SearchPath {
     /// What [`SearchPath::find`] tries, in words.
     pub(crate) fn tried(&self, folder: &Path, name: &str) -> String {
         const MAX_LISTED: usize = 4;
-        if name.len() > LONGEST_NAME {
-            return format!("nothing, as the name has more than {LONGEST_NAME} characters");
+        if is_no_name(name) {
+            return format!(
+                "nothing, as the name has more than {LONGEST_NAME} characters or {MOST_FOLDERS} folders"
+            );
         }
         let listed = |all: Vec<String>| {
             let n_more = all.len().saturating_sub(MAX_LISTED);
@@ -363,7 +402,7 @@ impl SearchPath {
             }
             text
         };
-        let names = names_of(name).into_iter().map(|name| format!("{name:?}"));
+        let names = self.names(name).into_iter().map(|name| format!("{name:?}"));
         let mut folders: Vec<String> = Vec::new();
         for folder in self.folders(folder) {
             let folder = match folder.display().to_string() {
@@ -379,14 +418,24 @@ impl SearchPath {
 
     fn folders<'a>(&'a self, folder: &'a Path) -> impl Iterator<Item = &'a Path> {
         let near = [folder, &self.master];
+        let n = if self.is_exhausted() {
+            0
+        } else {
+            self.folders.len()
+        };
         near.into_iter()
-            .chain(self.folders.iter().map(PathBuf::as_path))
+            .chain(self.folders[..n].iter().map(PathBuf::as_path))
     }
+}
+
+fn is_no_name(name: &str) -> bool {
+    let n_folders = name.matches(['/', '\\']).count();
+    name.len() > LONGEST_NAME || n_folders > MOST_FOLDERS
 }
 
 /// A file name as given, with slashes, and with ever fewer leading folders; nothing of one that is too long.
 fn names_of(name: &str) -> Vec<String> {
-    if name.len() > LONGEST_NAME {
+    if is_no_name(name) {
         return Vec::new();
     }
     let with_slashes = name.replace('\\', "/");
@@ -489,6 +538,7 @@ mod tests {
         let search = SearchPath {
             master: "m".into(),
             folders: vec!["lib".into()],
+            n_tried: 0,
         };
         let find = |name| search.find(&source, Path::new("m/sub"), name);
         assert_eq!(find("near.k"), Some("m/sub/near.k".into()));
@@ -504,5 +554,41 @@ mod tests {
             r#""Z:\\a\\x.k", "Z:/a/x.k", "a/x.k", "x.k" in m, lib"#
         );
         assert_eq!(find("nowhere.k"), None);
+    }
+
+    #[test]
+    fn a_relative_folder_is_that_of_the_program_or_of_the_deck() {
+        let source = Memory::new()
+            .with("m/lib/near.k", "")
+            .with("far/lib/far.k", "")
+            .with("lib/far.k", "");
+        let mut search = SearchPath {
+            master: "m".into(),
+            ..SearchPath::default()
+        };
+        search.add_folder(Path::new("lib"));
+        let find = |name| search.find(&source, Path::new("m"), name);
+        assert_eq!(find("far.k"), Some("lib/far.k".into()));
+        assert_eq!(find("near.k"), Some("m/lib/near.k".into()));
+        search.add_folder(Path::new("/far/lib"));
+        assert_eq!(search.folders.len(), 3);
+    }
+
+    #[test]
+    fn the_search_for_what_is_not_there_is_bounded() {
+        assert!(names_of(&"a/".repeat(MOST_FOLDERS + 1)).is_empty());
+        assert_eq!(names_of(&"a/".repeat(MOST_FOLDERS)).len(), MOST_FOLDERS);
+        let source = Memory::new().with("m/near.k", "").with("lib/far.k", "");
+        let mut search = SearchPath {
+            master: "m".into(),
+            folders: vec!["lib".into()],
+            n_tried: 0,
+        };
+        let find = |search: &SearchPath, name| search.find(&source, Path::new("m"), name);
+        assert!(find(&search, "far.k").is_some());
+        assert_eq!(search.n_places("a/b/far.k"), 9);
+        search.n_tried = MOST_TRIED;
+        assert_eq!(find(&search, "far.k"), None);
+        assert_eq!(find(&search, "near.k"), Some("m/near.k".into()));
     }
 }

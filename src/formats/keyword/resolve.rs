@@ -1,6 +1,6 @@
 //! The end of reading a deck: nodes are numbered, motions are carried out, thickness is handed out.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -301,7 +301,7 @@ fn spread_node_thickness(
 }
 
 /// For each node its thickness, 0 for none. The last row that names a node counts, so rows are
-/// taken from the last to the first, and what a range has in common with later ones is passed over.
+/// taken from the last to the first, and what a set or a range has in common with later ones like it is passed over.
 fn node_thickness(
     assembly: &Assembly,
     model: &Model,
@@ -309,7 +309,9 @@ fn node_thickness(
 ) -> Result<Vec<f64>, Cancelled> {
     let mut at_node: Vec<Option<f64>> = vec![None; model.nodes.len()];
     let mut sorted: Vec<u64> = Vec::new();
-    let mut covered = Intervals::default();
+    let mut given_sets = HashSet::new();
+    // By step and by what the step leaves of an id.
+    let mut covered: HashMap<[u64; 2], Intervals> = HashMap::new();
     for row in assembly.node_thickness.iter().rev() {
         monitor.check()?;
         let mut give = |id: u64| {
@@ -319,6 +321,7 @@ fn node_thickness(
         };
         if row.is_set {
             let set = model.sets.nodes.get(&row.first);
+            let set = set.filter(|_| given_sets.insert(row.first));
             let ids = set.into_iter().flat_map(|set| &set.ids);
             ids.for_each(|&id| give(id));
             continue;
@@ -331,16 +334,24 @@ fn node_thickness(
             sorted = model.nodes.ids().to_vec();
             sorted.sort_unstable();
         }
-        let ranges = if row.step == 1 {
-            covered.cover(row.first, row.last)
-        } else {
-            vec![(row.first, row.last)]
-        };
-        for (first, last) in ranges {
+        let like = covered.entry([row.step, row.first % row.step]);
+        for (first, last) in like.or_default().cover(row.first, row.last) {
             let from = sorted.partition_point(|&id| id < first);
-            let ids = sorted[from..].iter().take_while(|&&id| id <= last);
-            let ids = ids.filter(|&id| (id - row.first).is_multiple_of(row.step));
-            ids.for_each(|&id| give(id));
+            let n = sorted[from..].partition_point(|&id| id <= last);
+            let off = (first - row.first) % row.step;
+            let first = first.saturating_add((row.step - off) % row.step);
+            if first > last {
+                continue;
+            }
+            // Of the nodes there, or of the ids that are meant, the fewer.
+            if (last - first) / row.step < n as u64 {
+                let ids = (first..=last).step_by(usize::try_from(row.step).unwrap_or(usize::MAX));
+                ids.for_each(&mut give);
+            } else {
+                let ids = sorted[from..from + n].iter();
+                let ids = ids.filter(|&id| (id - row.first).is_multiple_of(row.step));
+                ids.for_each(|&id| give(id));
+            }
         }
     }
     Ok(at_node.into_iter().map(Option::unwrap_or_default).collect())

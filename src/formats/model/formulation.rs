@@ -50,7 +50,7 @@ impl ShellFormulation {
     /// Integration points in the plane of a quad: four for the fully integrated formulations, else one.
     pub fn n_plane(self) -> u8 {
         match self.elform {
-            6 | 7 | 16 | -16 | 18 | 20 | 21 => 4,
+            6 | 7 | 16 | -16 | 18 | 20 | 21 | 26 => 4,
             _ => 1,
         }
     }
@@ -122,6 +122,7 @@ mod tests {
         assert!(ShellFormulation::new(2, 3.0, 1.0).is_trapezoidal);
         assert!(!ShellFormulation::new(2, 3.0, 0.0).is_trapezoidal);
         assert_eq!(ShellFormulation::new(16, 5.0, 0.0).n_plane(), 4);
+        assert_eq!(ShellFormulation::new(26, 5.0, 0.0).n_plane(), 4);
         assert_eq!(ShellFormulation::new(2, 5.0, 0.0).n_plane(), 1);
     }
 }

@@ -9,7 +9,7 @@ mod surface;
 mod titles;
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 pub use forming::{Forming, OtherResults, ShellStrain, ShellStress, StrainPoint, StressPoint};
 pub use formulation::{ShellControl, ShellFormulation};
@@ -395,6 +395,27 @@ pub struct Model {
 }
 
 impl Model {
+    /// The layout of a deck that this one includes and that names any of the shells: one that an including deck has
+    /// counts for what it includes. O(shells).
+    pub fn layout_of_include(&self) -> Layout {
+        let largest = self.shells.iter().map(|shell| shell.id).max();
+        self.layout.max(Layout::holding(largest.unwrap_or(0)))
+    }
+
+    /// The first file whose content is another one than in `before`, the files of an earlier read of this model.
+    pub fn changed_since(&self, before: &[ReadFile]) -> Option<&Path> {
+        let is_as_before =
+            |(now, then): (&ReadFile, &ReadFile)| now.path == then.path && now.hash == then.hash;
+        let same = self.files.iter().zip(before);
+        let n_same = same.take_while(|&pair| is_as_before(pair)).count();
+        if n_same == self.files.len() && n_same == before.len() {
+            return None;
+        }
+        // Where a file is missing, another one does not ask for it any more.
+        let other = self.files.get(n_same).or(self.files.first())?;
+        Some(&other.path)
+    }
+
     /// A model of one part from a bare triangle mesh; ids count from 1.
     pub fn from_mesh(mesh: &TriMesh, title: impl Into<String>) -> Self {
         let ids = (1..=mesh.n_vertices() as u64).collect();

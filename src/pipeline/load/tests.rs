@@ -1,6 +1,9 @@
 //! Choices of parts as they are typed, and hashes of what is read.
 
+use std::io;
+
 use super::*;
+use crate::formats::{FileBytes, FileStamp};
 
 #[test]
 fn choices_are_understood_as_typed() {
@@ -50,4 +53,52 @@ fn the_file_and_its_includes_are_hashed() {
     let hashes: Vec<_> = part.model.files.iter().map(|file| file.hash).collect();
     assert_eq!(hashes, bytes.map(|bytes| Some(FileHash::of(bytes))));
     assert_eq!(part.hash(), Some(FileHash::of(bytes[0])));
+}
+
+/// The disk, on which the file is written anew as soon as it was read.
+struct WrittenAnew(PathBuf);
+
+impl FileSource for WrittenAnew {
+    fn open(&self, path: &Path, max_bytes: u64, monitor: &Monitor) -> io::Result<FileBytes> {
+        let bytes = Disk.open(path, max_bytes, monitor)?;
+        if path == self.0 {
+            std::fs::write(path, [&bytes[..], b"$ longer\n"].concat())?;
+        }
+        Ok(bytes)
+    }
+
+    fn stream(&self, path: &Path) -> io::Result<Box<dyn io::Read + '_>> {
+        Disk.stream(path)
+    }
+
+    fn find(&self, path: &Path) -> Option<PathBuf> {
+        Disk.find(path)
+    }
+
+    fn stamp(&self, path: &Path) -> Option<FileStamp> {
+        Disk.stamp(path)
+    }
+}
+
+#[test]
+fn a_file_that_is_written_before_it_is_hashed_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let deck = b"*KEYWORD\n*INCLUDE\nmesh.k\n*PART\nsheet\n1,1,1\n*END\n";
+    let mesh = b"*NODE\n1,0.,0.,0.\n2,1.,0.,0.\n3,0.,1.,0.\n*ELEMENT_SHELL\n1,1,1,2,3,3\n*END\n";
+    std::fs::write(at("deck.k"), deck).unwrap();
+    let settings = LoadSettings::default();
+    for changing in ["none.k", "deck.k", "mesh.k"] {
+        std::fs::write(at("mesh.k"), mesh).unwrap();
+        let source = WrittenAnew(at(changing));
+        let read = load_from(&source, &at("deck.k"), &settings, &Monitor::silent());
+        match read {
+            Ok(_) => assert_eq!(changing, "none.k"),
+            Err(error) => {
+                let text = error.to_string();
+                assert!(text.contains(changing), "{text}");
+                assert!(text.contains("changed while it was read"), "{text}");
+            }
+        }
+    }
 }

@@ -150,16 +150,21 @@ pub(super) fn lost_includes(
         decks.push((&read.path, path, includes));
     }
     let search = |deck: &Path| {
-        let master = folder_of(deck);
-        let absolute = decks.iter().flat_map(|(.., deck)| &deck.folders);
-        let relative = decks.iter().flat_map(|(.., deck)| &deck.relative_folders);
-        let folders = absolute.map(PathBuf::from);
-        let folders = folders.chain(relative.map(|folder| master.join(folder)));
-        let of_options = crash.settings.read.include_folders.iter().cloned();
-        SearchPath {
-            folders: folders.chain(of_options).collect(),
-            master,
+        let mut search = SearchPath {
+            master: folder_of(deck),
+            ..SearchPath::default()
+        };
+        for (.., deck) in &decks {
+            let folders = deck.folders.iter().map(Path::new);
+            folders.for_each(|folder| search.add_folder(folder));
         }
+        for (.., deck) in &decks {
+            let folders = deck.relative_folders.iter().map(Path::new);
+            folders.for_each(|folder| search.add_relative_folder(folder));
+        }
+        let of_options = crash.settings.read.include_folders.iter().cloned();
+        search.folders.extend(of_options);
+        search
     };
     let whole = copy_of(&crash.path).map_or(&crash.path, |copy| &copy.path);
     let [before, after] = [&crash.path, whole].map(|path| search(path));

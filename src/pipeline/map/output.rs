@@ -419,6 +419,12 @@ impl MapWriter<'_> {
         self.run.recipe.options.replace_states
     }
 
+    /// That of the cards that define the elements anew, or that of the crash deck where none are.
+    fn include_layout(&self, decks: &[(&ReadFile, ExchangedDeck)]) -> Layout {
+        let of_cards = decks.first().map(|(_, deck)| deck.layout);
+        of_cards.unwrap_or_else(|| self.model.layout_of_include())
+    }
+
     fn include(
         &self,
         head: &str,
@@ -429,7 +435,7 @@ impl MapWriter<'_> {
         if !has_states && !self.thickness.is_empty() {
             return Ok(vec![new_file(path, self.elements(head, decks))]);
         }
-        let layout = decks.first().map_or(self.layout(), |(_, deck)| deck.layout);
+        let layout = self.include_layout(decks);
         let mut states = keyword_line(layout).as_bytes().to_vec();
         states.extend_from_slice(head.as_bytes());
         let beside = elements_path(path);
@@ -455,7 +461,7 @@ impl MapWriter<'_> {
         head: &str,
         decks: &[(&ReadFile, ExchangedDeck)],
     ) -> Result<Vec<u8>, PipelineError> {
-        let layout = decks.first().map_or(self.layout(), |(_, deck)| deck.layout);
+        let layout = self.include_layout(decks);
         let mut text = self.elements(head, decks);
         text.truncate(text.len() - b"*END\n".len());
         self.add_states(&mut text, layout)?;
@@ -464,7 +470,7 @@ impl MapWriter<'_> {
     }
 
     fn elements(&self, head: &str, decks: &[(&ReadFile, ExchangedDeck)]) -> Vec<u8> {
-        let layout = decks.first().map_or(self.layout(), |(_, deck)| deck.layout);
+        let layout = self.include_layout(decks);
         let mut text = keyword_line(layout).as_bytes().to_vec();
         text.extend_from_slice(head.as_bytes());
         for (_, deck) in decks {
@@ -472,20 +478,6 @@ impl MapWriter<'_> {
         }
         text.extend_from_slice(b"*END\n");
         text
-    }
-
-    /// The narrowest layout that holds the ids.
-    fn layout(&self) -> Layout {
-        let ids = self
-            .run
-            .shells
-            .iter()
-            .map(|&shell| self.model.shells[shell as usize].id);
-        match ids.max().unwrap_or(0) {
-            0..=99_999_999 => Layout::Standard,
-            100_000_000..=9_999_999_999 => Layout::I10,
-            _ => Layout::Long,
-        }
     }
 
     /// What is written for an element.

@@ -90,9 +90,14 @@ impl Group<'_> {
         monitor: &Monitor,
     ) -> Result<Made, PipelineError> {
         let crash = self.crash_parts(monitor)?;
-        let stamped = self.members.iter().map(|(file, _)| {
+        let stamped = self.members.iter().map(|(file, claim)| {
             // Read again, so that never more than one group is held.
-            load(&file.path, &file.settings, monitor)
+            let part = load(&file.path, &file.settings, monitor)?;
+            // The pose belongs to what it was found for.
+            match part.model.changed_since(&claim.files) {
+                Some(path) => Err(PipelineError::Changed(path.to_path_buf())),
+                None => Ok(part),
+            }
         });
         let stamped: Vec<LoadedPart> = stamped.collect::<Result<_, _>>()?;
         let Together {

@@ -23,6 +23,8 @@ use super::units::PairUnits;
 use super::write_file::{write_file, write_file_unless_cancelled};
 use crate::assess::Verdict;
 use crate::formats::keyword::rename::name_lines;
+use crate::formats::keyword::write::keyword_line;
+use crate::formats::model::ReadFile;
 use crate::geometry::Similarity;
 use crate::mapping::Status;
 use crate::monitor::Monitor;
@@ -112,6 +114,8 @@ fn stem_of(path: &Path) -> String {
 
 /// A stamped part with its place on the car.
 struct Claim {
+    /// What the stamped part was read from.
+    files: Vec<ReadFile>,
     ids: Vec<u64>,
     pose: Similarity,
     verdict: Verdict,
@@ -183,7 +187,7 @@ pub fn map_car(
     };
     // A deck without anything mapped would pass for a result.
     if !included.is_empty() {
-        let master = master(&record, &crash.file_name(), &included);
+        let master = master(&record, crash, &included);
         write_file(&recipe.folder.join(MASTER), master.as_bytes())?;
     }
     if recipe.has_pages {
@@ -218,11 +222,11 @@ fn claims(
                 row.reasons.extend(unit.map(CarReason::OtherUnit));
             }
             let lengths = Lengths::new(PairUnits::of(parts.map(Some)).lengths);
-            Ok(found.map(|found| (found, lengths)))
+            Ok(found.map(|found| (found, part.model.files.clone(), lengths)))
         });
         match unless_cancelled(found)? {
-            Ok(Some((found, lengths))) => {
-                let claim = claim(row, &found, lengths);
+            Ok(Some((found, files, lengths))) => {
+                let claim = claim(row, &found, files, lengths);
                 claims.extend(claim.map(|claim| (at, claim)));
             }
             Ok(None) => {}
@@ -256,7 +260,12 @@ fn copies(
 }
 
 /// Puts what was found into the row; `None` where that says that the right part is not there.
-fn claim(row: &mut CarRow, found: &FoundParts, lengths: Lengths) -> Option<Claim> {
+fn claim(
+    row: &mut CarRow,
+    found: &FoundParts,
+    files: Vec<ReadFile>,
+    lengths: Lengths,
+) -> Option<Claim> {
     if let Presence::Absent { parts, gauge } = &found.presence {
         row.reasons.push(CarReason::Absent(parts.clone()));
         row.reasons.extend(gauge.map(CarReason::Gauge));
@@ -276,6 +285,7 @@ fn claim(row: &mut CarRow, found: &FoundParts, lengths: Lengths) -> Option<Claim
         row.reasons.push(CarReason::Rivals(found.rivals.clone()));
     }
     Some(Claim {
+        files,
         ids: row.crash_parts.clone(),
         pose: run.crash_from_stamped,
         verdict: run.assessment.verdict,
@@ -329,8 +339,12 @@ fn take(row: &mut CarRow, made: &Made, (given, doubt): (&Given, Option<f64>)) {
 }
 
 /// The deck that includes the results of all parts.
-fn master(record: &CarRecord, crash: &str, included: &[String]) -> String {
-    let mut text = format!("*KEYWORD\n$ forming results mapped onto {crash}\n");
+fn master(record: &CarRecord, crash: &LoadedPart, included: &[String]) -> String {
+    let mut text = format!(
+        "{}$ forming results mapped onto {}\n",
+        keyword_line(crash.model.layout_of_include()),
+        crash.file_name()
+    );
     for row in &record.rows {
         let [file, part, state, ..] = row.cells();
         let onto = match part.as_str() {
@@ -376,6 +390,36 @@ fn car_page(record: &CarRecord, crash: &LoadedPart) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::Memory;
+    use crate::pipeline::load::load_from;
+
+    /// A crash model of one element.
+    fn crash(keyword: &str) -> LoadedPart {
+        let mesh = "*NODE\n1,0.,0.,0.\n2,1.,0.,0.\n3,0.,1.,0.\n*ELEMENT_SHELL\n1,1,1,2,3,3\n*END\n";
+        let source = Memory::new().with("crash.k", format!("{keyword}{mesh}"));
+        let settings = LoadSettings::default();
+        load_from(&source, Path::new("crash.k"), &settings, &Monitor::silent()).unwrap()
+    }
+
+    fn record(rows: Vec<CarRow>) -> CarRecord {
+        CarRecord {
+            build: "build".to_owned(),
+            schema: "",
+            direction: String::new(),
+            crash: "crash.k".to_owned(),
+            rows,
+            copies: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn the_deck_that_includes_all_has_the_layout_of_the_crash_deck() {
+        for keyword in ["*KEYWORD\n", "*KEYWORD I10=Y\n", "*KEYWORD LONG=Y\n"] {
+            let text = master(&record(Vec::new()), &crash(keyword), &["a.k".to_owned()]);
+            assert!(text.starts_with(keyword), "{text}");
+            assert!(text.ends_with("*INCLUDE\na.k\n*END\n"), "{text}");
+        }
+    }
 
     #[test]
     fn no_two_files_have_one_name() {
@@ -395,16 +439,9 @@ mod tests {
 
     #[test]
     fn names_of_included_files_go_on_over_lines() {
-        let record = CarRecord {
-            build: "build".to_owned(),
-            schema: "",
-            direction: String::new(),
-            crash: "crash.k".to_owned(),
-            rows: vec![CarRow::new(Path::new("empty.dynain"))],
-            copies: Vec::new(),
-        };
+        let record = record(vec![CarRow::new(Path::new("empty.dynain"))]);
         let names = ["n".repeat(200), "short.k".to_owned()];
-        let text = master(&record, "crash.k", &names);
+        let text = master(&record, &crash("*KEYWORD\n"), &names);
         let joined = text.replace(" +\n", "");
         for name in &names {
             assert!(joined.contains(&format!("*INCLUDE\n{name}\n")), "{text}");

@@ -10,7 +10,14 @@ fn read(text: &str) -> (Forming, Diagnostics) {
     let file = Arc::new(SourceFile::new("dynain", text));
     let (mut forming, mut diagnostics) = (RawForming::default(), Diagnostics::default());
     for block in Blocks::new(&file, Layout::Standard) {
-        read_block(&file, &block, AS_IT_IS, &mut forming, &mut diagnostics);
+        read_block(
+            &file,
+            &block,
+            AS_IT_IS,
+            &mut forming,
+            &mut diagnostics,
+            &Monitor::silent(),
+        );
     }
     (forming.of_shells, diagnostics)
 }
@@ -318,7 +325,14 @@ fn ids_are_shifted_either_way_and_stresses_scaled() {
         stress: 10.0,
     };
     for block in Blocks::new(&file, Layout::Standard) {
-        read_block(&file, &block, units, &mut forming, &mut diagnostics);
+        read_block(
+            &file,
+            &block,
+            units,
+            &mut forming,
+            &mut diagnostics,
+            &Monitor::silent(),
+        );
     }
     let of_set = forming.of_sets.stress(0);
     let of_shell = forming.of_shells.stress(0);
@@ -374,4 +388,18 @@ fn a_deck_cut_anywhere_is_no_panic() {
         let (forming, _) = read(&deck[..end]);
         assert!(forming.n_stress() <= whole);
     }
+}
+
+#[test]
+fn a_cancel_request_ends_a_block() {
+    let rows = (1..=3 * CHECKED_AFTER).map(|id| format!("{id},1,1\n0.,1.,2.,3.,4.,5.,6.,.25\n"));
+    let deck = "*INITIAL_STRESS_SHELL\n".to_owned() + &rows.collect::<String>();
+    let file = Arc::new(SourceFile::new("dynain", &*deck));
+    let monitor = Monitor::silent();
+    monitor.request_cancel();
+    let (mut forming, mut found) = (RawForming::default(), Diagnostics::default());
+    for block in Blocks::new(&file, Layout::Standard) {
+        read_block(&file, &block, AS_IT_IS, &mut forming, &mut found, &monitor);
+    }
+    assert_eq!(forming.of_shells.n_stress(), CHECKED_AFTER - 1);
 }
