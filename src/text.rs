@@ -109,11 +109,16 @@ const MOST_DECIMALS: usize = 7;
 
 /// Lengths below this are rounding.
 pub const NOTHING: f64 = 5e-8;
+/// What stands for a length that there is none of.
+const NO_LENGTH: &str = "–";
 /// In millimetres.
 const MICROMETRE: f64 = 0.001;
 
 /// A length with three significant digits: 0.0412, 1.35, 128.
 pub fn length(value: f64) -> String {
+    if !value.is_finite() {
+        return NO_LENGTH.to_owned();
+    }
     // What rounding leaves of nothing is nothing.
     let value = if value.abs() < NOTHING { 0.0 } else { value };
     let magnitude = value.abs();
@@ -135,6 +140,14 @@ pub fn signed(value: f64) -> String {
 /// A change in percent with its sign: `+0.12 %`, `−3.00 %`.
 pub fn signed_percent(fraction: f64) -> String {
     with_sign(fraction, &fixed(100.0 * fraction, 2)) + " %"
+}
+
+/// The same with as many more decimals, up to four, as tell it from a limit.
+pub fn signed_percent_beside(fraction: f64, limit: f64) -> String {
+    let text = |of: f64, decimals| fixed(100.0 * of.abs(), decimals);
+    let differs = |&decimals: &usize| text(fraction, decimals) != text(limit, decimals);
+    let decimals = (2..4).find(differs).unwrap_or(4);
+    with_sign(fraction, &fixed(100.0 * fraction, decimals)) + " %"
 }
 
 /// A number as written, with its sign; what reads as zero has none.
@@ -243,6 +256,9 @@ impl Lengths {
     /// The number alone: `0.381`. Of less than a micrometre only that is stated: nobody reads more zeros, and
     /// no sheet is known so well.
     pub fn number(self, value: f64) -> String {
+        if !value.is_finite() {
+            return NO_LENGTH.to_owned();
+        }
         match (self.decimals, self.unit) {
             (None, Some(LengthUnit::Millimeter))
                 if (NOTHING..MICROMETRE).contains(&value.abs()) =>
@@ -277,7 +293,8 @@ impl Lengths {
 
     /// The number and the unit: `0.381 mm`.
     pub fn of(self, value: f64) -> String {
-        self.number(value) + self.suffix()
+        let unit = if value.is_finite() { self.suffix() } else { "" };
+        self.number(value) + unit
     }
 
     /// What lengths stay below, after "within": `0.381 mm`, of less than a micrometre `0.001 mm`.
@@ -423,6 +440,9 @@ mod tests {
         assert_eq!(read, ["0", "0.5", "120", "−3.25"]);
         assert_eq!(percent(-1e-9), "0.0 %");
         assert_eq!([-2.5, -1e-9].map(|x| tick_number(x, 1)), ["−2.5", "0"]);
+        let missed =
+            [-0.005_002, 0.004_2, 0.005].map(|change| signed_percent_beside(change, 0.005));
+        assert_eq!(missed, ["−0.5002 %", "+0.42 %", "+0.5000 %"]);
         let read = [0.001_2, -0.03, 1e-9].map(signed_percent);
         assert_eq!(read, ["+0.12 %", "−3.00 %", "0.00 %"]);
     }

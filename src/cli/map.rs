@@ -147,8 +147,8 @@ struct MapOutputArgs {
         value_parser = BoolishValueParser::new()
     )]
     large: bool,
-    /// Thickness of elements without values: that of their section, a length, or nearest for that of the
-    /// nearest element that has one.
+    /// Thickness of elements without values: section for what the crash deck gives them, a length, or nearest
+    /// for that of the nearest element that has one.
     #[arg(
         long,
         value_name = "section|LENGTH|nearest",

@@ -203,42 +203,38 @@ pub(super) fn at_middle<const N: usize>(
 /// Weighs the layers of elements.
 #[derive(Default)]
 struct LayerWeights {
-    rules: Vec<LayerRule>,
+    /// By the bits of their places.
+    rules: HashMap<Vec<u64>, LayerRule>,
 }
 
 impl LayerWeights {
     /// T, weight and number of each layer.
-    fn of(&mut self, layers: &[(f64, [f64; 1])]) -> Vec<[f64; 3]> {
-        let places: Vec<f64> = layers.iter().map(|(t, _)| *t).collect();
-        if places.is_empty() {
+    fn of(&mut self, layers: &[(f64, f64)]) -> Vec<[f64; 3]> {
+        if layers.is_empty() {
             return Vec::new();
         }
-        let known = self.rules.iter().position(|rule| rule.has_places(&places));
-        let known = known.unwrap_or_else(|| {
-            self.rules.push(LayerRule::from_places(places));
-            self.rules.len() - 1
-        });
-        let weights = self.rules[known].weights().iter();
-        let weighted = layers.iter().zip(weights);
-        weighted
-            .map(|((t, [number]), w)| [*t, *w, *number])
-            .collect()
+        let places = layers.iter().map(|(t, _)| *t);
+        let known = self.rules.entry(places.clone().map(f64::to_bits).collect());
+        let rule = known.or_insert_with(|| LayerRule::from_places(places.collect()));
+        let weighted = layers.iter().zip(rule.weights());
+        weighted.map(|((t, number), w)| [*t, *w, *number]).collect()
     }
 
-    /// What is shown of an element, of whose points `number_of` makes numbers.
+    /// What is shown of an element, of whose layers `number_of` makes numbers: points of a layer are averaged before,
+    /// as the mapping does.
     fn shown<const N: usize>(
         &mut self,
         points: Vec<(f64, [f64; N])>,
         (layer, value): (LayerChoice, FormingValue),
         number_of: impl Fn(&[f64; N]) -> f64,
     ) -> f64 {
+        let layers = into_layers(points);
         if layer == LayerChoice::Middle {
-            let middle = at_middle(into_layers(points).into_iter());
+            let middle = at_middle(layers.into_iter());
             return middle.map_or(f64::NAN, |values| number_of(&values));
         }
-        let numbers = points.iter().map(|(t, values)| (*t, [number_of(values)]));
-        let layers = into_layers(numbers.collect());
-        layer.pick(&self.of(&layers), value)
+        let numbers = layers.iter().map(|(t, values)| (*t, number_of(values)));
+        layer.pick(&self.of(&numbers.collect::<Vec<_>>()), value)
     }
 }
 
@@ -409,5 +405,29 @@ mod tests {
             has_forming_value(&part, FormingValue::VonMises, None),
             Ok(())
         );
+    }
+
+    #[test]
+    fn tensors_of_the_points_of_a_layer_are_averaged_and_not_their_numbers() {
+        let point = |t: f64, xx: f64| {
+            let mut state = [0.0; 7];
+            state[0] = xx;
+            (t, state)
+        };
+        let layer = |t: f64, base: f64| {
+            let points = [100.0, 100.0, -100.0, -100.0];
+            points.map(|xx| point(t, base + xx))
+        };
+        let points = [layer(-0.5, 10.0), layer(0.5, 30.0)].concat();
+        let mut weights = LayerWeights::default();
+        for (choice, expected) in LayerChoice::ALL
+            .into_iter()
+            .zip([20.0, 30.0, 10.0, 20.0, 30.0])
+        {
+            let value = FormingValue::VonMises;
+            let number = |state: &_| value.of_state(state);
+            let shown = weights.shown(points.clone(), (choice, value), number);
+            assert!((shown - expected).abs() < 1e-9, "{choice:?}: {shown}");
+        }
     }
 }

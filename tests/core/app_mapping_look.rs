@@ -175,7 +175,9 @@ fn the_elements_that_can_be_trusted_least_are_listed_worst_first() {
     // The first of them is the worst of the check.
     let checks = &result.record.checks;
     let check = checks.iter().find(|c| c.name.starts_with("Confidence"));
-    let worst = check.unwrap().worst.unwrap();
+    let check = check.unwrap();
+    let worst = check.worst.unwrap();
+    assert_eq!(check.worst_element, Some(id(worst)));
     assert_eq!(run.mapped.elements[worst].confidence, found[0].1);
     // Elements without values stand in their own list.
     let (without, _) = window.state.unmapped_elements();

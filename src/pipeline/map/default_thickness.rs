@@ -10,13 +10,13 @@ use crate::monitor::{Cancelled, Monitor};
 /// Thickness of the elements without values in the files that are written.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum DefaultThickness {
-    /// They keep that of their section: nothing is written for them.
+    /// They keep what the crash deck gives them, on their own card or by their section: nothing is written for them.
     #[default]
     Section,
     /// This one, in the crash model's unit of lengths.
     Fixed(f64),
     /// That of the nearest element with a thickness, along the mesh. Elements that hang together with none keep
-    /// that of their section.
+    /// theirs.
     Nearest,
 }
 

@@ -280,6 +280,10 @@ pub fn map_record(
         check_ms: run.check_ms,
     };
     record.checks = checks_of(run, &record, lengths, monitor)?;
+    for check in &mut record.checks {
+        let id = |element: usize| crash.model.shells[run.shells[element] as usize].id;
+        check.worst_element = check.worst.map(id);
+    }
     Ok(record)
 }
 

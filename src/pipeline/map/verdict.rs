@@ -12,6 +12,7 @@ use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::forming_values::FormingValue;
 use crate::text::{
     Lengths, compared_percents, counted, fixed, length, percent, share, signed_percent,
+    signed_percent_beside,
 };
 
 /// Share of the area that is to carry values where no other is asked for.
@@ -29,10 +30,11 @@ const DOUBTFUL: f64 = 0.5;
 const DOUBTFUL_AREA: f64 = 0.05;
 
 /// The picture in which a check is seen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CheckPicture {
     /// Status of the elements.
+    #[default]
     Status,
     /// Distance between the sheets.
     Distance,
@@ -87,7 +89,7 @@ fn with_words<S: Serializer>(reason: &Option<CheckReason>, to: S) -> Result<S::O
 }
 
 /// One check.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct CheckRecord {
     /// What is checked.
     pub name: String,
@@ -103,8 +105,11 @@ pub struct CheckRecord {
     pub reason: Option<CheckReason>,
     /// Where it is seen.
     pub picture: CheckPicture,
-    /// The element of the run that is farthest off, if one stands out.
+    /// The element of the run that is farthest off, by its place there, if one stands out.
+    #[serde(skip)]
     pub worst: Option<usize>,
+    /// Its id, as it stands in a record.
+    pub worst_element: Option<u64>,
 }
 
 /// All checks; that of the pose stands first, then those that are not met, where they are seen.
@@ -171,10 +176,9 @@ pub(super) fn checks_of(
                     // mapped, so this is no verdict.
                     found: share(of_range),
                     limit: "of the range, P95".to_owned(),
-                    is_met: None,
-                    reason: None,
                     picture,
                     worst: worst_difference(run, value),
+                    ..CheckRecord::default()
                 });
             }
         }
@@ -197,7 +201,7 @@ fn pose(record: &MapRecord, lengths: Lengths) -> Option<CheckRecord> {
         is_met: most.is_good(),
         reason: (most == PoseOrigin::Given).then_some(CheckReason::GivenPose),
         picture: CheckPicture::Distance,
-        worst: None,
+        ..CheckRecord::default()
     })
 }
 
@@ -210,11 +214,11 @@ fn area(run: &MapRun, record: &MapRecord) -> CheckRecord {
         found,
         limit: format!("at least {limit}"),
         is_met: Some(record.mapped_area >= wanted),
-        reason: None,
         picture: CheckPicture::Status,
         worst: elements
             .iter()
             .position(|report| !report.status.has_values()),
+        ..CheckRecord::default()
     }
 }
 
@@ -228,9 +232,9 @@ fn doubled(run: &MapRun) -> Option<CheckRecord> {
         found: counted(n, "element"),
         limit: "none".to_owned(),
         is_met: Some(false),
-        reason: None,
         picture: CheckPicture::Status,
         worst: elements.iter().position(|e| is_doubled(e.status)),
+        ..CheckRecord::default()
     })
 }
 
@@ -242,9 +246,8 @@ fn read_errors(run: &MapRun) -> Option<CheckRecord> {
         found: format!("{n} in nodes, elements or transformations"),
         limit: "none".to_owned(),
         is_met: Some(false),
-        reason: None,
         picture: CheckPicture::Status,
-        worst: None,
+        ..CheckRecord::default()
     })
 }
 
@@ -268,9 +271,9 @@ fn distance(run: &MapRun, lengths: Lengths) -> CheckRecord {
             None => half_an_element(run, worst, lengths),
         },
         is_met: worst.map(|_| mapped.n_distant == 0),
-        reason: None,
         picture: CheckPicture::Distance,
         worst,
+        ..CheckRecord::default()
     }
 }
 
@@ -317,9 +320,9 @@ fn confidence(run: &MapRun) -> CheckRecord {
         found,
         limit: format!("at most {limit}"),
         is_met: share.map(|share| share <= DOUBTFUL_AREA),
-        reason: None,
         picture: CheckPicture::Confidence,
         worst: largest(run, |element| -of(element)),
+        ..CheckRecord::default()
     }
 }
 
@@ -334,7 +337,11 @@ pub(super) fn change(now: f64, before: f64) -> Option<f64> {
 
 /// A change as it is told; a dash where there is none.
 pub(super) fn change_text(change: Option<f64>) -> String {
-    change.map_or_else(|| "–".to_owned(), signed_percent)
+    change.map_or_else(no_change, signed_percent)
+}
+
+fn no_change() -> String {
+    "–".to_owned()
 }
 
 fn mean(
@@ -346,12 +353,14 @@ fn mean(
     let change = change(pair.crash.mean, pair.stamped.mean);
     CheckRecord {
         name: name.to_owned(),
-        found: change_text(change),
+        found: change.map_or_else(no_change, |change| {
+            signed_percent_beside(change, MEAN_CHANGE)
+        }),
         limit: format!("±{}", percent(MEAN_CHANGE)),
         is_met: change.map(|change| change.abs() <= MEAN_CHANGE),
-        reason: None,
         picture,
         worst: worst_difference(run, value),
+        ..CheckRecord::default()
     }
 }
 
@@ -374,9 +383,9 @@ fn beside_section(run: &MapRun) -> Option<CheckRecord> {
         found: format!("{}–{}", thickness_ratio(low), thickness_ratio(high)),
         limit: format!("{} to {}", fixed(least, 1), fixed(most, 0)),
         is_met: Some(low >= least && high <= most),
-        reason: None,
         picture: CheckPicture::Thickness,
         worst: Some(worst),
+        ..CheckRecord::default()
     })
 }
 
@@ -398,10 +407,8 @@ fn volume(run: &MapRun) -> Option<CheckRecord> {
         name: "Volume of the sheet".to_owned(),
         found: signed_percent(change),
         limit: "for information".to_owned(),
-        is_met: None,
-        reason: None,
         picture: CheckPicture::Thickness,
-        worst: None,
+        ..CheckRecord::default()
     })
 }
 
@@ -413,10 +420,8 @@ fn balance(run: &MapRun, monitor: &Monitor) -> Result<Option<CheckRecord>, Cance
         name: "Forces left at nodes".to_owned(),
         found: format!("{} (stamped {})", percent(crash), percent(stamped)),
         limit: "for information".to_owned(),
-        is_met: None,
-        reason: None,
         picture: CheckPicture::Stress,
-        worst: None,
+        ..CheckRecord::default()
     }))
 }
 
@@ -438,6 +443,7 @@ fn peak(run: &MapRun, pair: &PairRecord, monitor: &Monitor) -> Result<CheckRecor
         reason: at_best.map(|_| CheckReason::PeakNarrowerThanElement),
         picture: CheckPicture::PlasticStrain,
         worst: largest(run, |element| run.plastic_strain(element)),
+        ..CheckRecord::default()
     })
 }
 
