@@ -17,7 +17,7 @@ pub struct OneSided {
     /// this mesh's own area.
     #[serde(with = "any_float")]
     pub overlap: f64,
-    /// Root mean square distance within the overlap.
+    /// Root mean square distance within the overlap; infinite, as the next two, where nothing overlaps.
     #[serde(with = "any_float")]
     pub rmse: f64,
     /// Distance below which 95 % of the overlap's area lies.
@@ -59,14 +59,25 @@ impl Coverage {
         a.max(b)
     }
 
-    /// The larger root mean square distance of both directions.
+    /// The larger root mean square distance of both directions in which anything overlaps; infinite where nothing does.
     pub fn rmse(&self) -> f64 {
-        self.source_on_target.rmse.max(self.target_on_source.rmse)
+        self.largest(|one| one.rmse)
     }
 
-    /// The larger 95th percentile of both directions.
+    /// The same of the 95th percentiles.
     pub fn p95(&self) -> f64 {
-        self.source_on_target.p95.max(self.target_on_source.p95)
+        self.largest(|one| one.p95)
+    }
+
+    /// The same of the largest distances.
+    pub fn max(&self) -> f64 {
+        self.largest(|one| one.max)
+    }
+
+    fn largest(&self, of: impl Fn(&OneSided) -> f64) -> f64 {
+        let both = [&self.source_on_target, &self.target_on_source].map(of);
+        let finite = both.into_iter().filter(|distance| distance.is_finite());
+        finite.reduce(f64::max).unwrap_or(f64::INFINITY)
     }
 }
 
@@ -261,10 +272,10 @@ fn one_sided(mut measured: Vec<Measured>, limit: f64) -> OneSided {
         rmse: if covered > 0.0 {
             (sum_sq / covered).sqrt()
         } else {
-            0.0
+            f64::INFINITY
         },
-        p95: p95.map_or(0.0, |m| m.distance),
-        max: within.last().map_or(0.0, |m| m.distance),
+        p95: p95.map_or(f64::INFINITY, |m| m.distance),
+        max: within.last().map_or(f64::INFINITY, |m| m.distance),
         max_anywhere: measured.last().map_or(0.0, |m| m.distance),
     }
 }

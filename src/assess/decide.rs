@@ -258,7 +258,7 @@ fn scale(assessment: &Assessment, most: f64) -> Option<Reason> {
 
 /// Whether the surfaces alone hold the part, within its tolerance.
 fn is_held(assessment: &Assessment) -> bool {
-    is_firm(assessment) && assessment.freedom.motion.is_none()
+    is_firm(assessment) && assessment.freedom.is_none()
 }
 
 /// Whether the pose is certain within its tolerance.

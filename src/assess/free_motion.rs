@@ -206,12 +206,17 @@ pub(crate) fn weakest_motion(
 }
 
 impl Freedom {
-    /// Nothing resists.
+    /// The surfaces do not meet: nothing resists.
     const ALL: Self = Self {
         motion: None,
         n_free: 6,
         weakest: 0.0,
     };
+
+    /// Whether the overlap resists every motion.
+    pub(super) fn is_none(&self) -> bool {
+        self.n_free == 0
+    }
 }
 
 /// What the overlap resists: Σ a aᵀ and Σ n nᵀ over its points.

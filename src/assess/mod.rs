@@ -75,11 +75,12 @@ pub fn assess(
         noise,
         tolerance,
         reach,
+        free_limit,
         ..
     } = Distances::of(source, target, pose.scale, settings);
     let (coverage, near) = coverage_and_near(pair, pose, limit, reach, monitor)?;
     monitor.progress("verify", 1, Some(2));
-    let freedom = free_motions(source, target, pose, limit);
+    let freedom = free_motions(source, target, pose, free_limit);
     monitor.check()?;
     let mut ambiguity = Ambiguity::of(&outcome.alternatives);
     if ambiguity.clarity != Clarity::Clear {

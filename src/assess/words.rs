@@ -129,13 +129,7 @@ impl Reason {
                 overlap,
                 p95,
                 rivals_sought,
-            } => format!(
-                "{} of the smaller part has a counterpart with like normals, 95 % of the overlap lies \
-                 within {}, and {}",
-                percent(*overlap),
-                lengths.bound(*p95),
-                rivals_words(*rivals_sought)
-            ),
+            } => in_order(*overlap, *p95, *rivals_sought, lengths),
         }
     }
 
@@ -147,6 +141,20 @@ impl Reason {
             _ => self.words(lengths),
         }
     }
+}
+
+/// Sheets at an offset lie beyond the overlap where their elements are small: nothing is said of distances then.
+fn in_order(overlap: f64, p95: f64, rivals_sought: bool, lengths: Lengths) -> String {
+    let within = if p95.is_finite() {
+        format!(", 95 % of the overlap lies within {},", lengths.bound(p95))
+    } else {
+        String::new()
+    };
+    format!(
+        "{} of the smaller part has a counterpart with like normals{within} and {}",
+        percent(overlap),
+        rivals_words(rivals_sought)
+    )
 }
 
 fn rivals_words(were_sought: bool) -> &'static str {

@@ -379,7 +379,7 @@ impl Metrics {
         Self {
             rmse: coverage.rmse(),
             p95: coverage.p95(),
-            max: there.max.max(back.max),
+            max: coverage.max(),
             overlap: OverlapRecord {
                 stamped: there.overlap,
                 crash: back.overlap,

@@ -74,6 +74,41 @@ fn free_motions_are_named_with_their_axis() {
     assert_eq!(freedom(&pan(9.0, 0.0, everywhere)).motion, None);
 }
 
+/// The other skin of a finely meshed profile lies beyond the overlap, and slides along itself all the same.
+#[test]
+fn an_extruded_profile_is_held_by_nothing_along_itself_however_far_its_skins_lie_apart() {
+    let angle = |off: f64, length: f64| {
+        sheet(60, |u, v| {
+            let along = 60.0 * (u - 0.5);
+            let (x, y) = if along < 0.0 {
+                (0.0, -along)
+            } else {
+                (along, 0.0)
+            };
+            Point3::new(x - off, y - off, length * (v - 0.5))
+        })
+    };
+    let (source, target) = (angle(0.0, 40.0), angle(0.9, 60.0));
+    let [source, target] = [&source, &target].map(|mesh| Surface::new(mesh, "source").unwrap());
+    let mut outcome = matched(&source, &target);
+    outcome.target_from_source = Similarity::identity();
+    let settings = AssessSettings::default();
+    let monitor = Monitor::silent();
+    let assessment = assess(&source, &target, &outcome, &settings, &monitor).unwrap();
+    assert_eq!(assessment.coverage.better_overlap(), 0.0);
+    assert_eq!(assessment.coverage.rmse(), f64::INFINITY);
+    let motion = assessment.freedom.motion.unwrap();
+    assert_eq!(motion.kind, FreeMotionKind::Extruded);
+    assert_ne!(
+        assessment.verdict,
+        Verdict::Good,
+        "{:?}",
+        assessment.reasons
+    );
+    let lines = assessment.sentences(Lengths::new(Some(LengthUnit::Millimeter)));
+    assert!(!lines.iter().any(|line| line.contains("inf")), "{lines:?}");
+}
+
 #[test]
 fn a_smooth_panel_that_comes_apart_where_it_is_moved_does_not_slide() {
     // Two meshes of one surface, whose curvature changes a little along x and y.
