@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use super::similarity::{NEARLY_ORTHONORMAL, off_orthonormal};
 use super::{Camera, Matrix3, Point3, Projection, Rotation, Similarity, Vector3};
 
 /// A motion as it is stored.
@@ -30,8 +31,8 @@ impl<'de> Deserialize<'de> for Similarity {
         let stored = StoredSimilarity::deserialize(deserializer)?;
         let rotation = Matrix3::from_fn(|row, column| stored.rotation[row][column]);
         // No rounding is repaired here: the pose is what was stored, to the last bit.
-        let off = (rotation.transpose() * rotation - Matrix3::identity()).amax();
-        let is_motion = off < 1e-6 && stored.scale.is_finite() && stored.scale > 0.0;
+        let is_rotation = off_orthonormal(&rotation) < NEARLY_ORTHONORMAL;
+        let is_motion = is_rotation && stored.scale.is_finite() && stored.scale > 0.0;
         if !is_motion {
             return Err(serde::de::Error::custom(
                 "the pose is no rotation and scale",
@@ -128,6 +129,27 @@ pub mod any_float {
     }
 }
 
+/// [`any_float`] for fields that may be missing.
+pub mod any_float_or_none {
+    use super::{Deserialize, Deserializer, Serialize, Serializer, any_float};
+
+    #[derive(Serialize, Deserialize)]
+    struct Stored(#[serde(with = "any_float")] f64);
+
+    /// Writes a number, a word, or nothing.
+    pub fn serialize<S: Serializer>(value: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+        value.map(Stored).serialize(serializer)
+    }
+
+    /// Reads what [`serialize`] wrote.
+    pub fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Option<f64>, D::Error> {
+        let stored = Option::<Stored>::deserialize(deserializer)?;
+        Ok(stored.map(|stored| stored.0))
+    }
+}
+
 /// For points and vectors: x, y, z.
 pub mod xyz {
     use super::{Deserialize, Deserializer, Serialize, Serializer};
@@ -221,8 +243,13 @@ mod tests {
     fn numbers_without_end_are_words() {
         #[derive(Debug, Serialize, Deserialize)]
         struct Score(#[serde(with = "any_float")] f64);
+        #[derive(Debug, Serialize, Deserialize)]
+        struct Maybe(#[serde(with = "any_float_or_none")] Option<f64>);
         for value in [0.1, f64::INFINITY, f64::NEG_INFINITY, f64::NAN, -0.0] {
             assert_eq!(again(&Score(value)).0.to_bits(), value.to_bits());
+        }
+        for value in [None, Some(0.1), Some(f64::INFINITY)] {
+            assert_eq!(again(&Maybe(value)).0, value);
         }
     }
 }

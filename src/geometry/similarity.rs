@@ -2,6 +2,11 @@
 
 use super::{Matrix3, Matrix4, Point3, Pose, Vector3};
 
+/// Largest entry of |RᵀR − I| of a rotation that is stored and read again.
+pub(super) const NEARLY_ORTHONORMAL: f64 = 1e-6;
+/// A scale is the rounding of a matrix up to so many times what it leaves of its columns' being alike.
+const ROUNDING_OF_SCALE: f64 = 10.0;
+
 /// Why a 4×4 matrix is not a similarity.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum MatrixError {
@@ -162,7 +167,8 @@ impl Similarity {
     }
 
     /// Reads a 4×4 matrix for column vectors; `tolerance` bounds the entries of |AᵀA/c² − I|.
-    /// The 3×3 block is kept as given, divided by its scale; nothing is rounded or projected.
+    /// The 3×3 block is kept as given, divided by its scale, unless it was written with few digits: then the rotation
+    /// is the nearest one, and a scale that these digits do not tell from 1 is 1.
     pub fn from_matrix4(matrix: &Matrix4, tolerance: f64) -> Result<Self, MatrixError> {
         if !matrix.iter().all(|x| x.is_finite()) {
             return Err(MatrixError::NotFinite);
@@ -182,14 +188,19 @@ impl Similarity {
             return Err(MatrixError::NotOrthogonal { deviation });
         }
         // A rigid matrix stays bit-identical when it is copied and pasted.
-        let scale = if (scale_sq - 1.0).abs() <= tolerance.min(1e-6) {
+        let rounding = (ROUNDING_OF_SCALE * deviation).max(tolerance.min(1e-6));
+        let scale = if (scale_sq - 1.0).abs() <= rounding {
             1.0
         } else {
             scale_sq.sqrt()
         };
+        let mut rotation = block / scale;
+        if off_orthonormal(&rotation) >= 0.1 * NEARLY_ORTHONORMAL {
+            rotation = nearest_orthonormal(rotation);
+        }
         let translation = matrix.fixed_view::<3, 1>(0, 3).into();
         Ok(Self {
-            rotation: block / scale,
+            rotation,
             translation,
             scale,
         })
@@ -216,6 +227,20 @@ impl Similarity {
             .into_iter()
             .map(|p| (self.apply(p) - other.apply(p)).norm())
             .fold(0.0, f64::max)
+    }
+}
+
+/// Largest entry of |RᵀR − I|.
+pub(super) fn off_orthonormal(rotation: &Matrix3) -> f64 {
+    (rotation.transpose() * rotation - Matrix3::identity()).amax()
+}
+
+/// The orthonormal matrix nearest to one, of the same hand.
+fn nearest_orthonormal(matrix: Matrix3) -> Matrix3 {
+    let svd = matrix.svd(true, true);
+    match (svd.u, svd.v_t) {
+        (Some(u), Some(v_t)) => u * v_t,
+        _ => matrix,
     }
 }
 
@@ -248,6 +273,39 @@ mod tests {
             Similarity::from_matrix4(&mirror.to_matrix4(), 1e-9)
                 .unwrap()
                 .is_mirrored()
+        );
+    }
+
+    /// What is pasted is stored in projects and written into cards that hold no scale.
+    #[test]
+    fn a_matrix_of_few_digits_is_the_nearest_rotation() {
+        let turned = Pose::rotation(Vector3::new(0.0, 0.0, std::f64::consts::FRAC_PI_4));
+        for motion in [sample(), turned.into(), Similarity::mirror_x()] {
+            for digits in [1e5, 1e6, 1e7] {
+                let rigid = Similarity {
+                    scale: 1.0,
+                    ..motion
+                };
+                let written = rigid.to_matrix4().map(|x| (x * digits).round() / digits);
+                let read = Similarity::from_matrix4(&written, 1e-4).unwrap();
+                assert_eq!(read.scale, 1.0);
+                assert_eq!(read.is_mirrored(), motion.is_mirrored());
+                assert!((read.rotation - motion.rotation).amax() < 2.0 / digits);
+                let stored = serde_json::to_string(&read).unwrap();
+                assert_eq!(serde_json::from_str::<Similarity>(&stored).unwrap(), read);
+            }
+        }
+        // All digits are kept, and a scale that they tell from 1 too.
+        let scaled = Similarity {
+            scale: 1.000_02,
+            ..sample()
+        };
+        let read = Similarity::from_matrix4(&scaled.to_matrix4(), 1e-4).unwrap();
+        assert!((read.scale - scaled.scale).abs() < 1e-14);
+        let rigid = Similarity::from(turned).to_matrix4();
+        assert_eq!(
+            Similarity::from_matrix4(&rigid, 1e-4).unwrap().to_matrix4(),
+            rigid
         );
     }
 

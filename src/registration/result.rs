@@ -8,7 +8,7 @@ use super::icp::{Stage, Termination};
 use super::multi_start::starts::StartKind;
 use super::scale_check::ScaleCheck;
 use crate::geometry::Similarity;
-use crate::geometry::serial::any_float;
+use crate::geometry::serial::{any_float, any_float_or_none};
 
 /// Which of the two meshes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -142,6 +142,7 @@ pub struct MirrorCheck {
     /// Score of the opposite hand relative to the result's: below 1 it fits better. From the mirror
     /// images of the result, or from a search of its own where the result was not certain. `None`
     /// where both hands competed anyway, or the match was stopped.
+    #[serde(default, with = "any_float_or_none")]
     pub score_ratio: Option<f64>,
     /// Whether the ratio is what borders and holes say, where surfaces fit both hands, and no measured error.
     #[serde(default)]
