@@ -236,6 +236,10 @@ pub fn with_alternative(
     outcome
         .alternatives
         .sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
+    let hand = &mut outcome.mirror_check;
+    if !hand.by_borders {
+        hand.score_ratio = hand.score_ratio.map(|of_hand| of_hand / ratio);
+    }
     let (target, source) = (&parts.crash.surface, &parts.stamped.surface);
     let check = assess_settings(parts, &run.recipe.settings);
     let assessment = assess::assess(source, target, &outcome, &check, monitor)?;

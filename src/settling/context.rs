@@ -60,6 +60,11 @@ impl<'a> PairContext<'a> {
         self.monitor.check()
     }
 
+    /// Whether the work is to end with what it has.
+    pub(super) fn is_stopped(&self) -> bool {
+        self.monitor.stop_requested()
+    }
+
     /// Source and target.
     pub(super) fn surfaces(&self) -> [&'a Surface; 2] {
         [self.source, self.target]

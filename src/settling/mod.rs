@@ -63,16 +63,17 @@ pub fn settle(
     let found = outcome.target_from_source;
     choose_pairs(&context, outcome)?;
     hold(&context, outcome)?;
-    let chosen = chosen_by_shape(&context, outcome)?;
-    take(outcome, chosen);
-    let placed = placed_by_holes(&context, outcome)?;
-    take(outcome, placed);
-    let placed = placed_by_pieces(&context, outcome)?;
-    take(outcome, placed);
-    let placed = placed_as_a_whole(&context, outcome)?;
-    take(outcome, placed);
-    let placed = placed_on_copies(&context, outcome)?;
-    take(outcome, placed);
+    for choose in CHOICES {
+        if is_ended(&context, outcome) {
+            return Ok(());
+        }
+        let chosen = choose(&context, outcome)?;
+        // A search that was stopped leaves poses that were never refined.
+        if is_ended(&context, outcome) {
+            return Ok(());
+        }
+        take(outcome, chosen);
+    }
     if let Some(pose) = without_trims(&context, &outcome.target_from_source)? {
         outcome.target_from_source = pose;
     }
@@ -92,6 +93,29 @@ pub fn settle(
     }
     drop_same_poses(&context, outcome);
     measure_scale(&context, outcome, &found)
+}
+
+/// A step that may put another pose in the place of the result.
+type Choice = fn(&PairContext<'_>, &MatchOutcome) -> Result<Option<ChosenPose>, Cancelled>;
+
+/// These steps, in their order.
+const CHOICES: [Choice; 5] = [
+    chosen_by_shape,
+    placed_by_holes,
+    placed_by_pieces,
+    placed_as_a_whole,
+    placed_on_copies,
+];
+
+/// Whether a stop was asked for: the result is then the pose that was settled so far, and other poses were not sought
+/// to the end.
+fn is_ended(context: &PairContext<'_>, outcome: &mut MatchOutcome) -> bool {
+    let is_stopped = context.is_stopped();
+    if is_stopped {
+        outcome.termination = Termination::Stopped;
+        outcome.rivals_sought = false;
+    }
+    is_stopped
 }
 
 /// The pose of the closest pairs, or of all of them.
@@ -224,6 +248,25 @@ mod tests {
             .map(|other| other.target_from_source.translation.x)
             .collect();
         assert_eq!(left, [50.0]);
+    }
+
+    #[test]
+    fn a_stop_ends_the_choice_between_poses_and_is_told() {
+        let part = cap(100.0);
+        let monitor = Monitor::silent();
+        let input = MatchInput {
+            source: &part,
+            target: &part,
+            reduced: None,
+        };
+        let settings = MatchSettings::default();
+        let mut outcome = match_surfaces(&input, &settings, &monitor).unwrap();
+        assert!(outcome.rivals_sought && outcome.termination != Termination::Stopped);
+        monitor.request_stop();
+        let check = AssessSettings::default();
+        settle(&mut outcome, [&part, &part], &settings, &check, &monitor).unwrap();
+        assert!(!outcome.rivals_sought);
+        assert_eq!(outcome.termination, Termination::Stopped);
     }
 
     #[test]
