@@ -224,8 +224,14 @@ impl FanNormals {
             } else {
                 own
             };
-            let known = self.of_some[first..].iter().position(|&n| n == normal);
-            let place = known.map_or(self.of_some.len(), |place| first + place);
+            // Of a large fan the last one alone: one after the other they would be compared with all before.
+            let from = if fan.len() <= MAX_FAN {
+                first
+            } else {
+                first.max(self.of_some.len().saturating_sub(1))
+            };
+            let known = self.of_some[from..].iter().position(|&n| n == normal);
+            let place = known.map_or(self.of_some.len(), |place| from + place);
             if known.is_none() {
                 self.of_some.push(normal);
             }
