@@ -42,6 +42,7 @@ pub fn run(options: StartupOptions) -> anyhow::Result<ExitCode> {
     let native = eframe::NativeOptions {
         viewport: window(&preferences),
         renderer: eframe::Renderer::Wgpu,
+        wgpu_options: graphics(),
         ..eframe::NativeOptions::default()
     };
     let make: eframe::AppCreator<'_> = Box::new(move |cc| {
@@ -50,6 +51,20 @@ pub fn run(options: StartupOptions) -> anyhow::Result<ExitCode> {
     });
     eframe::run_native("shapematch", native, make).map_err(|error| explained(&error))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Buffers as large as the adapter has them: 4.5 million triangles do not fit into the usual 256 MiB.
+fn graphics() -> eframe::egui_wgpu::WgpuConfiguration {
+    let mut options = eframe::egui_wgpu::WgpuConfiguration::default();
+    if let eframe::egui_wgpu::WgpuSetup::CreateNew(setup) = &mut options.wgpu_setup {
+        let usual = Arc::clone(&setup.device_descriptor);
+        setup.device_descriptor = Arc::new(move |adapter| {
+            let mut device = usual(adapter);
+            device.required_limits.max_buffer_size = adapter.limits().max_buffer_size;
+            device
+        });
+    }
+    options
 }
 
 fn window(preferences: &Preferences) -> egui::ViewportBuilder {
