@@ -13,6 +13,7 @@ use crate::pipeline::load::LoadedPart;
 use crate::pipeline::match_parts::{MatchRecipe, MatchRun};
 use crate::pipeline::names::told_apart;
 use crate::role::{PerRole, Role};
+use crate::settings::SETTINGS;
 
 /// What undo covers: a value that is cheap to clone, because all geometry is shared.
 ///
@@ -27,6 +28,8 @@ pub struct Document {
     pub pairs: PointPairs,
     /// Every setting of the match.
     pub recipe: MatchRecipe,
+    /// What they are for other parts, while a remedy has changed some for the present ones.
+    pub recipe_before_remedy: Option<Box<MatchRecipe>>,
     /// The last match that was taken over.
     pub result: Option<MatchResult>,
     /// Forming results onto the crash part.
@@ -218,6 +221,34 @@ impl Document {
         let stamped = self.all_stamped().map(|part| (Role::Stamped, &**part));
         let has_any = |part: &LoadedPart| part.diagnostics().iter().any(|found| !found.is_empty());
         crash.chain(stamped).filter(move |(_, part)| has_any(part))
+    }
+
+    /// Every setting of the match as the user wants it, for other parts too.
+    pub(super) fn set_recipe(&mut self, recipe: MatchRecipe) {
+        if let Some(before) = &mut self.recipe_before_remedy {
+            let changed = SETTINGS.iter().filter_map(|setting| {
+                let value = setting.get(&recipe)?;
+                (setting.get(&self.recipe).as_ref() != Some(&value)).then_some((setting, value))
+            });
+            for (setting, value) in changed {
+                setting.set(before, &value);
+            }
+        }
+        self.recipe = recipe;
+    }
+
+    /// The settings that a remedy asks for, until other parts are matched.
+    pub(super) fn set_remedy(&mut self, recipe: MatchRecipe) {
+        let before = std::mem::replace(&mut self.recipe, recipe);
+        self.recipe_before_remedy
+            .get_or_insert_with(|| Box::new(before));
+    }
+
+    /// Other parts are there: what remedies changed goes with those before.
+    pub(super) fn end_remedies(&mut self) {
+        if let Some(recipe) = self.recipe_before_remedy.take() {
+            self.recipe = *recipe;
+        }
     }
 
     /// True if the stamped part was moved.

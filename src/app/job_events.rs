@@ -36,6 +36,8 @@ impl AppState {
                 Vec::new()
             }
             JobStage::Finished(JobOutput::PartsFound(None)) if was_stopped => {
+                let (mut work, topics) = self.split();
+                topics.matching.match_cancelled(&mut work);
                 let text = "stopped before a crash part was found";
                 let took = Some(event.elapsed);
                 self.work().log_step(LogStep::Match, None, text, took);
@@ -102,7 +104,7 @@ impl AppState {
                     facts,
                     took,
                 };
-                topics.parts.take_reselected(work, new);
+                topics.parts.take_chosen(work, new);
             }
             JobOutput::Loaded {
                 role,
@@ -241,14 +243,19 @@ impl AppState {
             facts,
             took: find_time.unwrap_or_default(),
         };
-        topics.parts.take_reselected(&mut work, new);
+        topics.parts.take_reselected(&mut work, new, false);
         topics.matching.take_matched(&mut work, run, took)
     }
 
     fn take_cancelled(&mut self, key: JobKey, elapsed: Duration) {
         self.end_of(key);
-        if let JobKey::LoadFurther(revision) = key {
-            self.mapping.load_cancelled(revision);
+        match key {
+            JobKey::Match => {
+                let (mut work, topics) = self.split();
+                topics.matching.match_cancelled(&mut work);
+            }
+            JobKey::LoadFurther(revision) => self.mapping.load_cancelled(revision),
+            _ => {}
         }
         // A job that was replaced before it began is no news.
         if elapsed > Duration::ZERO {

@@ -4,7 +4,7 @@ use shapematch::app::*;
 use shapematch::assess::{Assessment, Clarity, Reason, ShapeReason, Twin, TwinAxis, Verdict};
 use shapematch::geometry::{Point3, Rotation, Similarity, TriMesh, Vector3};
 use shapematch::jobs::{JobEvent, JobKey, JobStage};
-use shapematch::registration::{Method, Surface};
+use shapematch::registration::{Hand, Method, Surface};
 use shapematch::role::Role;
 use shapematch::samples::SampleVariant;
 use shapematch::text::Lengths;
@@ -331,4 +331,109 @@ fn a_file_in_metres_is_the_cause_among_the_parts_of_a_whole_model_too() {
     assert_eq!(titles, ["Different units"]);
     let (label, _) = causes[0].remedy.as_ref().unwrap();
     assert_eq!(label, "Treat stamped as m");
+}
+
+/// A match that says that the opposite hand fits better, and that the shapes differ.
+fn with_remedies() -> Window {
+    let mut window = Window::with_both();
+    window.act(Action::MatchOrStop);
+    reassess(&mut window, |assessment| {
+        assessment.verdict = Verdict::Poor;
+        assessment.reasons = vec![Reason::OppositeHand {
+            score_ratio: 0.5,
+            by_borders: false,
+        }];
+    });
+    window
+}
+
+fn take_remedy(window: &mut Window, label: &str) {
+    let remedies = window.state.causes();
+    let mut remedies = remedies.into_iter().filter_map(|cause| cause.remedy);
+    let found = remedies.find(|remedy| remedy.0.starts_with(label));
+    for command in found.unwrap().1 {
+        window.apply(command);
+    }
+}
+
+fn hand(window: &Window) -> Hand {
+    window.state.document.recipe.settings.hand
+}
+
+#[test]
+fn what_a_remedy_changed_is_undone_with_its_match_and_ends_with_its_parts() {
+    let mut window = with_remedies();
+    take_remedy(&mut window, "Match the opposite hand");
+    assert_eq!(hand(&window), Hand::Mirrored);
+    assert_eq!(window.state.history.undo_name(), Some("Match"));
+    window.act(Action::Undo);
+    assert_eq!(hand(&window), Hand::Same);
+    let before = window.state.document.current_result().unwrap();
+    let reasons = &before.run.assessment.reasons;
+    assert!(matches!(reasons[..], [Reason::OppositeHand { .. }]));
+    window.act(Action::Redo);
+    assert_eq!(hand(&window), Hand::Mirrored);
+
+    // What the user chose himself stays, and the same file read again is the same part.
+    let mut recipe = window.state.document.recipe.clone();
+    recipe.settings.n_coarse_points = 700;
+    window.apply(MatchCommand::SetRecipe(Box::new(recipe)));
+    window.apply(FileCommand::Reload(Role::Stamped));
+    assert_eq!(hand(&window), Hand::Mirrored);
+    window.open("panel_stamped.k", Role::Stamped);
+    assert_eq!(hand(&window), Hand::Same);
+    assert_eq!(window.state.document.recipe.settings.n_coarse_points, 700);
+    window.act(Action::Undo);
+    assert_eq!(hand(&window), Hand::Mirrored, "with the parts");
+    window.apply(PartCommand::UseOnly(PartRef {
+        role: Role::Crash,
+        id: 12,
+    }));
+    assert_eq!(hand(&window), Hand::Same, "another crash part");
+
+    let mut window = Window::with_both();
+    let mut recipe = window.state.document.recipe.clone();
+    recipe.settings.hand = Hand::Either;
+    window.apply(MatchCommand::SetRecipe(Box::new(recipe)));
+    window.open("panel_stamped.k", Role::Stamped);
+    assert_eq!(hand(&window), Hand::Either, "the user's own choice");
+}
+
+#[test]
+fn a_remedy_whose_match_is_cancelled_changes_nothing() {
+    let mut window = with_remedies();
+    let before = window.state.document.clone();
+    let n_steps = window.state.history.n_done();
+    window.holds = true;
+    take_remedy(&mut window, "Match the opposite hand");
+    assert_eq!(hand(&window), Hand::Mirrored);
+    window.apply(MatchCommand::Cancel);
+    assert_eq!(window.state.document, before);
+    assert_eq!(window.state.history.n_done(), n_steps);
+}
+
+#[test]
+fn a_tolerance_that_was_allowed_holds_for_these_parts() {
+    let mut window = with_remedies();
+    reassess(&mut window, |assessment| {
+        let by = 4.693;
+        assessment.reasons = vec![Reason::Shape {
+            difference: ShapeReason::Surface {
+                by,
+                limit: 1.0,
+                at: Point3::origin(),
+                mostly: false,
+            },
+        }];
+    });
+    let tolerance = |window: &Window| window.state.document.recipe.settings.shape_tolerance;
+    take_remedy(&mut window, "Allow");
+    assert_eq!(tolerance(&window), 4.7);
+    assert_eq!(window.state.history.undo_name(), Some("Allow 4.70 mm"));
+    window.open("panel_stamped.k", Role::Stamped);
+    assert_eq!(tolerance(&window), 0.0);
+    window.act(Action::Undo);
+    assert_eq!(tolerance(&window), 4.7);
+    window.act(Action::Undo);
+    assert_eq!(tolerance(&window), 0.0);
 }

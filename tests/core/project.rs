@@ -983,3 +983,22 @@ fn the_command_line_says_when_a_project_lies_elsewhere_than_its_match() {
     assert!(!said.contains(note), "{said}");
     refined(&window);
 }
+
+#[test]
+fn what_a_remedy_changed_ends_with_its_parts_in_an_opened_project_too() {
+    let (_folder, [crash, stamped, path]) = folder();
+    let mut window = worked(&crash, &stamped);
+    let before = window.state.document.recipe.clone();
+    let mut recipe = before.clone();
+    recipe.settings.hand = Hand::Mirrored;
+    window.apply(MatchCommand::SetRemedy {
+        name: "Match the opposite hand".to_owned(),
+        recipe: Box::new(recipe.clone()),
+        is_matched: false,
+    });
+    save(&mut window, &path);
+    let mut opened = open(&path);
+    assert_eq!(opened.state.document.recipe, recipe);
+    opened.apply(FileCommand::Close(Role::Stamped));
+    assert_eq!(opened.state.document.recipe, before);
+}

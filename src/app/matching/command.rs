@@ -9,6 +9,14 @@ use crate::pipeline::sweep::SweepSettings;
 pub enum MatchCommand {
     /// New settings, as a whole; one undo step for a series of changes.
     SetRecipe(Box<MatchRecipe>),
+    /// The settings that a remedy asks for, for the present parts alone.
+    SetRemedy {
+        /// Name of the undo step.
+        name: String,
+        recipe: Box<MatchRecipe>,
+        /// The match that follows belongs to the same undo step.
+        is_matched: bool,
+    },
     /// "Align surface normals": make the first poses.
     Align,
     /// Show a first pose without taking it; `None` shows the real pose again.

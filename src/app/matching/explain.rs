@@ -141,7 +141,7 @@ impl AppState {
         units.into_iter().chain([starts, by_hand]).collect()
     }
 
-    /// Changes the recipe and runs again.
+    /// Changes the recipe for these parts and runs again.
     fn retry(
         &self,
         label: &str,
@@ -154,10 +154,12 @@ impl AppState {
         if recipe == self.document.recipe || !can_match {
             return None;
         }
-        let commands = vec![
-            MatchCommand::SetRecipe(Box::new(recipe)).into(),
-            MatchCommand::Run.into(),
-        ];
+        let set = MatchCommand::SetRemedy {
+            name: label.to_owned(),
+            recipe: Box::new(recipe),
+            is_matched: true,
+        };
+        let commands = vec![set.into(), MatchCommand::Run.into()];
         Some((label.to_owned(), commands))
     }
 
@@ -339,8 +341,12 @@ impl AppState {
         let mut recipe = self.document.recipe.clone();
         recipe.settings.shape_tolerance = tolerance;
         let label = format!("Allow {}", self.lengths().of(tolerance));
-        let command = MatchCommand::SetRecipe(Box::new(recipe));
-        (label, vec![command.into()])
+        let set = MatchCommand::SetRemedy {
+            name: label.clone(),
+            recipe: Box::new(recipe),
+            is_matched: false,
+        };
+        (label, vec![set.into()])
     }
 }
 

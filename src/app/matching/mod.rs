@@ -17,7 +17,7 @@ pub use preview::{Preview, Previews};
 
 use self::starts::LiveStarts;
 use super::work::Work;
-use super::{AppState, Document, Effect, OfParts, Reason, Shared};
+use super::{AppState, Document, Effect, GestureId, OfParts, Reason, Shared};
 use crate::jobs::{Live, Measurement, Stamp, SweepRows};
 use crate::pipeline::sweep::Sweep;
 use crate::registration::starts::Start;
@@ -41,6 +41,8 @@ pub struct MatchState {
     live_starts: OfParts<LiveStarts>,
     /// Why the last match gave no result.
     failure: Option<OfParts<Failure>>,
+    /// The undo step of a remedy whose match has not ended.
+    remedy_gesture: Option<GestureId>,
     /// Distances and overlap with the state they were measured in.
     measurement: Option<(Stamp, Shared<Measurement>)>,
     /// The state and the shape tolerance of the alternative that was measured last without being asked for.
@@ -69,7 +71,22 @@ impl AppState {
 impl MatchState {
     pub(super) fn apply(&mut self, work: &mut Work<'_>, command: MatchCommand) -> Vec<Effect> {
         match command {
-            MatchCommand::SetRecipe(recipe) => self.set_recipe(work, *recipe),
+            MatchCommand::SetRecipe(recipe) => {
+                // A slider sends many recipes; they are one step until something else happens.
+                let name = "Match settings";
+                let gesture = work.history.series(name);
+                self.change_recipe(work, name, gesture, |d| d.set_recipe(*recipe));
+            }
+            MatchCommand::SetRemedy {
+                name,
+                recipe,
+                is_matched,
+            } => {
+                let gesture = work.history.next_gesture();
+                let has_changed =
+                    self.change_recipe(work, &name, gesture, |d| d.set_remedy(*recipe));
+                self.remedy_gesture = (has_changed && is_matched).then_some(gesture);
+            }
             MatchCommand::Align => return run::align(work),
             MatchCommand::ShowStart(index) => self.show_start(work, index),
             MatchCommand::StepStart(direction) => self.step_start(work, direction),
@@ -118,8 +135,18 @@ impl MatchState {
         }
     }
 
+    /// A match was given up: the remedy that began it too.
+    pub(super) fn match_cancelled(&mut self, work: &mut Work<'_>) {
+        let gesture = self.remedy_gesture.take();
+        let before = gesture.and_then(|gesture| work.history.abandon_gesture(gesture));
+        if let Some(before) = before {
+            *work.document = before;
+        }
+    }
+
     /// The last match gave no pose.
     pub(super) fn match_failed(&mut self, work: &Work<'_>, message: String) {
+        self.remedy_gesture = None;
         let failure = Failure {
             method: work.document.recipe.settings.method,
             message,

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::MatchState;
 use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
-use crate::app::{Effect, LogStep, MatchResult, NoticeLevel, OfParts, facts};
+use crate::app::{Effect, GestureId, LogStep, MatchResult, NoticeLevel, OfParts, facts};
 use crate::geometry::Similarity;
 use crate::jobs::Stamp;
 use crate::pipeline::match_parts::MatchRun;
@@ -33,7 +33,9 @@ impl MatchState {
         self.live_starts = OfParts::default();
         let pose = run.crash_from_stamped;
         let before = work.document.stamped_center();
-        take_pose_as_result(work, "Match".to_owned(), pose, |stamp| MatchResult {
+        let gesture = self.remedy_gesture.take();
+        let step = ("Match".to_owned(), gesture);
+        take_pose_as_result(work, step, pose, |stamp| MatchResult {
             run: run.into(),
             alternative: None,
             stamp,
@@ -72,10 +74,12 @@ pub(super) fn show_alternative(work: &mut Work<'_>, alternative: Option<usize>) 
         Some(index) => format!("Alternative {}", index + 2),
     };
     work.log_step(LogStep::Match, Some(Role::Stamped), name.clone(), None);
-    take_pose_as_result(work, name, crash_from_stamped, |stamp| MatchResult {
-        alternative,
-        stamp,
-        ..result
+    take_pose_as_result(work, (name, None), crash_from_stamped, |stamp| {
+        MatchResult {
+            alternative,
+            stamp,
+            ..result
+        }
     });
 }
 
@@ -89,16 +93,16 @@ pub(super) fn next_alternative(work: &mut Work<'_>) {
     show_alternative(work, next);
 }
 
-/// Pose and result as one undo step.
+/// Pose and result as one undo step, or as part of the one that is still open.
 fn take_pose_as_result(
     work: &mut Work<'_>,
-    name: String,
+    (name, gesture): (String, Option<GestureId>),
     crash_from_stamped: Similarity,
     result: impl FnOnce(Stamp) -> MatchResult,
 ) {
     let revision = work.history.next_revision();
     work.previews.drop_all();
-    work.commit(name, |document| {
+    work.commit_in(name, gesture, |document| {
         // What was made at the very same pose, such as a mapping, still holds.
         if document.pose.crash_from_stamped != crash_from_stamped {
             document.pose.crash_from_stamped = crash_from_stamped;

@@ -5,22 +5,28 @@ use std::sync::Arc;
 use super::MatchState;
 use super::starts::LiveStarts;
 use crate::app::work::Work;
-use crate::app::{Effect, OfParts, Part};
+use crate::app::{Document, Effect, GestureId, OfParts, Part};
 use crate::jobs::{JobKind, MatchInput};
 use crate::pipeline::match_parts::{MatchRecipe, ReducedPair};
 use crate::registration::StartMethod;
 
 impl MatchState {
-    pub(super) fn set_recipe(&mut self, work: &mut Work<'_>, recipe: MatchRecipe) {
-        if work.is_unlocked().is_ok() {
-            // A slider sends many recipes; they are one step until something else happens.
-            let name = "Match settings";
-            let gesture = work.history.series(name);
-            work.commit_in(name, Some(gesture), |d| d.recipe = recipe);
-            if self.starts_of(work.document).is_none() {
-                work.previews.start = None;
-            }
+    /// Changes the settings as one undo step; says whether anything changed.
+    pub(super) fn change_recipe(
+        &mut self,
+        work: &mut Work<'_>,
+        name: &str,
+        gesture: GestureId,
+        change: impl FnOnce(&mut Document),
+    ) -> bool {
+        if work.is_unlocked().is_err() {
+            return false;
         }
+        let has_changed = work.commit_in(name, Some(gesture), change);
+        if self.starts_of(work.document).is_none() {
+            work.previews.start = None;
+        }
+        has_changed
     }
 
     pub(in crate::app) fn run_match(&mut self, work: &mut Work<'_>) -> Vec<Effect> {

@@ -239,4 +239,92 @@ impl PartsState {
         }
         effects
     }
+
+    /// A part took another selection or unit, as the user asked.
+    pub(in crate::app) fn take_chosen(&mut self, work: &mut Work<'_>, new: NewPart) {
+        let old = work.document.part(new.role);
+        let is_other = old.is_some_and(|old| old.facts.used != new.facts.used);
+        self.take_reselected(work, new, is_other);
+    }
+
+    /// A part took another selection or unit; remedies end where it is another pair for the user.
+    pub(in crate::app) fn take_reselected(
+        &mut self,
+        work: &mut Work<'_>,
+        new: NewPart,
+        is_other_pair: bool,
+    ) {
+        let NewPart {
+            role,
+            part,
+            facts,
+            took,
+        } = new;
+        // Another unit may have been set meanwhile.
+        let old = work.document.part(role);
+        let units = old.map(|old| old.loaded.settings.units);
+        let part = match units {
+            Some(units) if units != part.settings.units => Arc::new(part.with_units(units)),
+            _ => part,
+        };
+        let line = facts::load_line(&part, &facts);
+        let tools = part.tools_line();
+        let revision = work.history.next_revision();
+        let name = self.reselect_name(work, role, &part, &facts);
+        let gesture = self.unit_gesture.take();
+        let are_all_meant = self.are_all_meant(work.document);
+        work.previews.drop_all();
+        work.commit_in(name, gesture, |document| {
+            if is_other_pair {
+                document.end_remedies();
+            }
+            if let Some(old) = document.parts.get_mut(role) {
+                old.loaded = part.into();
+                old.facts = facts.into();
+                old.revision = revision;
+                old.level = None;
+            }
+        });
+        if are_all_meant {
+            self.mean_all(work.document);
+        }
+        self.forget_missing(work.document);
+        work.log_step(LogStep::Select, Some(role), line, Some(took));
+        if let Some(line) = tools {
+            work.log_at(NoticeLevel::Note, LogStep::Select, Some(role), line, None);
+        }
+        self.refresh_likeness(work.document);
+        work.follow(FollowUp::PartReselected(role));
+        let chosen = self.match_when_chosen.take();
+        let is_made = |part: &PartRef| part.role == role && work.document.is_only_used(*part);
+        if chosen.as_ref().is_some_and(is_made) {
+            work.follow(FollowUp::PartChosen);
+        }
+    }
+
+    /// What became of a part that took another selection, factor or unit.
+    fn reselect_name(
+        &self,
+        work: &Work<'_>,
+        role: Role,
+        part: &LoadedPart,
+        facts: &PartFacts,
+    ) -> String {
+        let old_factor = work.document.part(role).map(Part::length_factor);
+        let factor = part.settings.length_factor;
+        match part.settings.units {
+            _ if old_factor == Some(factor) => uses(facts),
+            Some(units) => format!("{} is in {}", part.file_name(), units.label()),
+            None => format!("Lengths × {}", tidy_factor(factor)),
+        }
+    }
+}
+
+/// "Use only 2000012", "Use 3 parts".
+fn uses(facts: &PartFacts) -> String {
+    let mut used = facts.used.iter();
+    match (used.next(), used.next()) {
+        (Some(id), None) => format!("Use only {id}"),
+        _ => format!("Use {}", facts::counted(facts.used.len(), "part")),
+    }
 }

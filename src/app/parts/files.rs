@@ -203,6 +203,7 @@ impl PartsState {
         work.commit(name, |document| {
             *document.parts.get_mut(role) = None;
             document.result = None;
+            document.end_remedies();
             if role == Role::Crash {
                 n_dropped = Some(document.drop_for_crash());
             } else {
@@ -287,23 +288,6 @@ impl PartsState {
 
     fn set_length_factor(&mut self, work: &mut Work<'_>, role: Role, factor: f64) -> Vec<Effect> {
         self.reselect(work, role, |settings| settings.length_factor = factor)
-    }
-
-    /// What became of a part that took another selection, factor or unit.
-    fn reselect_name(
-        &self,
-        work: &Work<'_>,
-        role: Role,
-        part: &LoadedPart,
-        facts: &PartFacts,
-    ) -> String {
-        let old_factor = work.document.part(role).map(Part::length_factor);
-        let factor = part.settings.length_factor;
-        match part.settings.units {
-            _ if old_factor == Some(factor) => uses(facts),
-            Some(units) => format!("{} is in {}", part.file_name(), units.label()),
-            None => format!("Lengths × {}", tidy_factor(factor)),
-        }
     }
 
     /// Makes the surface of a part again from the model in memory, with what is changed beside what was chosen
@@ -447,6 +431,7 @@ impl PartsState {
                 new.wanted_level = same.wanted_level;
             } else {
                 document.result = None;
+                document.end_remedies();
                 document.pose = StampedPose {
                     revision: pose_revision,
                     ..StampedPose::default()
@@ -515,53 +500,6 @@ impl PartsState {
             .notices
             .offer(NoticeLevel::Note, text, showing, &[Action::Swap]);
     }
-
-    /// A part took another selection or unit.
-    pub(in crate::app) fn take_reselected(&mut self, work: &mut Work<'_>, new: NewPart) {
-        let NewPart {
-            role,
-            part,
-            facts,
-            took,
-        } = new;
-        // Another unit may have been set meanwhile.
-        let old = work.document.part(role);
-        let units = old.map(|old| old.loaded.settings.units);
-        let part = match units {
-            Some(units) if units != part.settings.units => Arc::new(part.with_units(units)),
-            _ => part,
-        };
-        let line = facts::load_line(&part, &facts);
-        let tools = part.tools_line();
-        let revision = work.history.next_revision();
-        let name = self.reselect_name(work, role, &part, &facts);
-        let gesture = self.unit_gesture.take();
-        let are_all_meant = self.are_all_meant(work.document);
-        work.previews.drop_all();
-        work.commit_in(name, gesture, |document| {
-            if let Some(old) = document.parts.get_mut(role) {
-                old.loaded = part.into();
-                old.facts = facts.into();
-                old.revision = revision;
-                old.level = None;
-            }
-        });
-        if are_all_meant {
-            self.mean_all(work.document);
-        }
-        self.forget_missing(work.document);
-        work.log_step(LogStep::Select, Some(role), line, Some(took));
-        if let Some(line) = tools {
-            work.log_at(NoticeLevel::Note, LogStep::Select, Some(role), line, None);
-        }
-        self.refresh_likeness(work.document);
-        work.follow(FollowUp::PartReselected(role));
-        let chosen = self.match_when_chosen.take();
-        let is_made = |part: &PartRef| part.role == role && work.document.is_only_used(*part);
-        if chosen.as_ref().is_some_and(is_made) {
-            work.follow(FollowUp::PartChosen);
-        }
-    }
 }
 
 /// How a file is read that was not read before.
@@ -578,15 +516,6 @@ fn warn_of_same_parts(work: &mut Work<'_>) {
     let line = both.and_then(|both| same_parts_line(both.map(|part| &*part.loaded)));
     if let Some(line) = line {
         work.log_at(NoticeLevel::Warning, LogStep::Load, None, line, None);
-    }
-}
-
-/// "Use only 2000012", "Use 3 parts".
-fn uses(facts: &PartFacts) -> String {
-    let mut used = facts.used.iter();
-    match (used.next(), used.next()) {
-        (Some(id), None) => format!("Use only {id}"),
-        _ => format!("Use {}", facts::counted(facts.used.len(), "part")),
     }
 }
 

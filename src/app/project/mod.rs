@@ -132,6 +132,7 @@ impl AppState {
             parts: PerRole::from_fn(entry),
             pose: *document.crash_from_stamped(),
             recipe: document.recipe.clone(),
+            recipe_before_remedy: document.recipe_before_remedy.clone(),
             mapping: document.mapping.recipe.clone(),
             further_stamped: self.further_entries(),
             mapping_compared_with: document.mapping.compare_with.as_deref().map(absolute),

@@ -130,6 +130,7 @@ impl AppState {
         let mut effects = Vec::new();
         let mut document = Document {
             recipe: project.recipe.clone(),
+            recipe_before_remedy: project.recipe_before_remedy.clone(),
             mapping: Mapping {
                 recipe: project.mapping.clone(),
                 further: Vec::new(),

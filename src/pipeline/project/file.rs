@@ -229,6 +229,8 @@ pub struct Project {
     pub pose: Similarity,
     /// Every setting of the match.
     pub recipe: MatchRecipe,
+    /// What they are for other parts, if a remedy has changed some for these.
+    pub recipe_before_remedy: Option<Box<MatchRecipe>>,
     /// Every choice of the mapping.
     pub mapping: MapRecipe,
     /// Further stamped files that are mapped from, in the order of the list.
@@ -259,6 +261,8 @@ struct Written<'a> {
     stamped: Option<PartEntry>,
     pose: &'a Similarity,
     recipe: &'a MatchRecipe,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    recipe_before_remedy: &'a Option<Box<MatchRecipe>>,
     mapping: &'a MapRecipe,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     further_stamped: Vec<FurtherEntry>,
@@ -350,6 +354,7 @@ impl Project {
                 .unwrap_or_default(),
             saved_at: reader.take_or_tell("saved_at").unwrap_or_default(),
             recipe: reader.take_or_tell("recipe").unwrap_or_default(),
+            recipe_before_remedy: reader.take_or_tell("recipe_before_remedy"),
             mapping: reader.take_or_tell("mapping").unwrap_or_default(),
             further_stamped: reader.take_or_tell("further_stamped").unwrap_or_default(),
             mapping_compared_with: reader.take_or_tell("mapping_compared_with"),
@@ -403,6 +408,7 @@ impl Project {
             stamped,
             pose: &self.pose,
             recipe: &self.recipe,
+            recipe_before_remedy: &self.recipe_before_remedy,
             mapping: &self.mapping,
             further_stamped,
             mapping_compared_with: self
