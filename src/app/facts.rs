@@ -92,18 +92,20 @@ pub(super) fn n_alternatives(run: &MatchRun) -> usize {
 pub(super) fn match_line(run: &MatchRun, lengths: Lengths) -> String {
     let assessment = &run.assessment;
     let found = (&assessment.coverage, assessment.reasons.first());
-    line_of(assessment.verdict, found, lengths)
+    let verdict = (assessment.verdict, run.crash_from_stamped.is_mirrored());
+    line_of(verdict, found, lengths)
 }
 
-/// The same of a verdict with its figures and its first reason.
+/// The same of a verdict, with whether the pose mirrors the part, its figures and its first reason.
 pub(super) fn line_of(
-    verdict: Verdict,
+    (verdict, is_mirrored): (Verdict, bool),
     (coverage, reason): (&Coverage, Option<&Reason>),
     lengths: Lengths,
 ) -> String {
     let mut line = format!(
-        "{}: overlap stamped {}, crash {}, RMS {}, P95 {}",
+        "{}{}: overlap stamped {}, crash {}, RMS {}, P95 {}",
         verdict.label(),
+        if is_mirrored { ", mirrored" } else { "" },
         percent(coverage.source_on_target.overlap),
         percent(coverage.target_on_source.overlap),
         lengths.number(coverage.rmse()),

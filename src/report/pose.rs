@@ -51,6 +51,15 @@ pub struct SampleNode {
 }
 
 impl PoseRecord {
+    /// What is done to the part before it is rotated, to follow the angle and its axis; empty unless it is mirrored.
+    pub fn mirror_words(&self) -> &'static str {
+        if self.determinant < 0.0 {
+            ", after it is mirrored: x → −x"
+        } else {
+            ""
+        }
+    }
+
     /// Every form of `crash_from_stamped`, for a node and the centre of the stamped part.
     pub fn new(
         crash_from_stamped: &Similarity,
@@ -114,6 +123,7 @@ mod tests {
             assert!((angle_deg - 0.5_f64.to_degrees()).abs() < 1e-12);
             assert!((record.quaternion[0] - 0.25_f64.cos()).abs() < 1e-12);
             assert_eq!(record.determinant > 0.0, !pose.is_mirrored());
+            assert_eq!(record.mirror_words().is_empty(), !pose.is_mirrored());
             let node = record.sample_node.unwrap();
             assert_eq!(Point3::from(node.crash), pose.apply(&point));
             assert_eq!(

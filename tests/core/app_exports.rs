@@ -1,13 +1,19 @@
 //! What leaves the window: names, places, questions.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use shapematch::app::*;
+use shapematch::geometry::Similarity;
+use shapematch::jobs::{JobKind, JobOutput};
+use shapematch::pipeline::match_parts::MatchRun;
 use shapematch::pipeline::outputs::record::match_record;
 use shapematch::pipeline::outputs::{MeshOutput, Output};
+use shapematch::report::MatrixForm;
 use shapematch::role::{PerRole, Role};
 
 use super::app::{Window, shifted};
+use super::find_parts::really;
 
 fn last_effect(window: &Window) -> &Effect {
     window.effects.last().expect("an effect")
@@ -194,5 +200,40 @@ fn a_pose_that_was_moved_after_the_match_is_refused_with_one_reason() {
     assert!(why.is_err_and(|why| why.0.contains("after the match")));
     for reason in reasons(&window) {
         assert_eq!(reason, why);
+    }
+}
+
+#[test]
+fn a_mirrored_pose_is_named_where_it_is_copied_and_in_the_log() {
+    let mut window = Window::with_both();
+    window.apply(MatchCommand::Run);
+    let result_row = |window: &Window| {
+        let mut rows = window.state.log.rows().iter().rev();
+        let row = rows.find(|row| row.step == LogStep::Result).unwrap();
+        row.text.clone()
+    };
+    assert!(!result_row(&window).contains("mirrored"));
+    window.runner = Some(mirrored_match);
+    window.apply(MatchCommand::Run);
+    let line = result_row(&window);
+    assert!(line.contains(", mirrored: overlap stamped"), "{line}");
+    for (form, words) in [
+        (MatrixForm::Rows, "(stamped → crash, mirrored, "),
+        (MatrixForm::Inverse, "(crash → stamped, mirrored, "),
+    ] {
+        window.apply(ExportCommand::Copy(CopyForm::Matrix(form)));
+        let toast = window.state.log.notices.toasts().last().unwrap();
+        assert!(toast.text.contains(words), "{}", toast.text);
+    }
+}
+
+/// A real match whose part is mirrored.
+fn mirrored_match(kind: JobKind) -> Result<JobOutput, String> {
+    match really(kind)? {
+        JobOutput::Matched(run) => Ok(JobOutput::Matched(Arc::new(MatchRun {
+            crash_from_stamped: run.crash_from_stamped.after(&Similarity::mirror_x()),
+            ..MatchRun::clone(&run)
+        }))),
+        other => Ok(other),
     }
 }

@@ -88,19 +88,23 @@ impl Work<'_> {
 
     /// Copies the matrix at once; cards are made by the worker.
     fn copy_form_now(&mut self, form: CopyForm) -> Vec<Effect> {
+        let pose = self.document.crash_from_stamped();
+        let mirrored = if pose.is_mirrored() { ", mirrored" } else { "" };
         let mut effects = match form {
             CopyForm::Matrix(form) => {
-                let text = form.write(self.document.crash_from_stamped());
+                let text = form.write(pose);
                 let direction = match form {
                     MatrixForm::Inverse => "crash → stamped",
                     _ => "stamped → crash",
                 };
-                let what = format!("Matrix ({direction}, {}, all digits)", form.label());
+                let label = form.label();
+                let what = format!("Matrix ({direction}{mirrored}, {label}, all digits)");
                 self.copy(text, &what)
             }
             CopyForm::Cards(_) if self.tells_of_two_units() => Vec::new(),
             CopyForm::Cards(cards) => {
-                let what = format!("{} (stamped → crash, ten columns)", form.label());
+                let label = form.label();
+                let what = format!("{label} (stamped → crash{mirrored}, ten columns)");
                 let to = Destination::Clipboard(what);
                 self.request(Output::Cards(cards), to)
             }

@@ -35,10 +35,10 @@ impl Placing {
 
     /// The match in a line.
     pub(in crate::app) fn line(&self, lengths: Lengths) -> String {
-        let verdict = self.verdict;
+        let verdict = (self.verdict, self.crash_from_stamped.is_mirrored());
         match &self.coverage {
             Some(coverage) => facts::line_of(verdict, (coverage, self.reason.as_ref()), lengths),
-            None => verdict.label().to_owned(),
+            None => self.verdict.label().to_owned(),
         }
     }
 }

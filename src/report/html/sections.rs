@@ -210,9 +210,10 @@ impl Report<'_> {
             (
                 "Rotation",
                 cell(format!(
-                    "{}° about the axis {}",
+                    "{}° about the axis {}{}",
                     fixed(rotation.angle_deg, 4),
-                    vector(rotation.axis, 6)
+                    vector(rotation.axis, 6),
+                    pose.mirror_words()
                 )),
             ),
             (

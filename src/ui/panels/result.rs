@@ -137,6 +137,7 @@ fn outdated_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &m
     let mut title = format!("Earlier result: {}", result.verdict().label());
     title += &pose_number(state, result);
     ui.label(RichText::new(title).color(color).size(15.0));
+    mirrored_ui(ui, result);
     paragraph(ui, sentence(reason));
     if let Some(coverage) = state.coverage_of(result) {
         let spread = format!(
@@ -182,6 +183,7 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
             ui.with_layout(right, |ui| tolerance_ui(ui, state, result, commands));
         }
     });
+    mirrored_ui(ui, result);
     if let Some(alternative) = shown_alternative(result) {
         alternative_ui(ui, state, result, alternative);
         return;
@@ -202,6 +204,14 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
             .is_some_and(|stated| stated.unknown_offset == 0.0);
     for statement in assessment.statements(lengths).iter().skip(is_told.into()) {
         paragraph(ui, sentence(statement));
+    }
+}
+
+/// A pose of the opposite hand is no plain one, whatever its verdict.
+fn mirrored_ui(ui: &mut Ui, result: &MatchResult) {
+    let pose = result.run.pose(result.alternative);
+    if pose.is_some_and(|pose| pose.is_mirrored()) {
+        ui.label(RichText::new("Opposite hand: the stamped part is mirrored").strong());
     }
 }
 
@@ -510,8 +520,9 @@ fn moved_ui(ui: &mut Ui, state: &AppState) {
     paragraph(
         ui,
         format!(
-            "The part rotates by {}° about the axis {axis}.",
-            fixed(turn.angle_deg, 3)
+            "The part rotates by {}° about the axis {axis}{}.",
+            fixed(turn.angle_deg, 3),
+            record.mirror_words()
         ),
     );
     if let Some(node) = record.sample_node {

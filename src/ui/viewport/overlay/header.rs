@@ -165,6 +165,7 @@ fn title(painter: &Painter, over: &Overlay<'_>, role: Role, room: f32) -> [Arc<G
     let (name, what) = match role {
         Role::Crash if state.is_mapping_shown() => ("CRASH", "mapped"),
         Role::Crash => ("CRASH", "fixed"),
+        Role::Stamped if state.shown_pose().is_mirrored() => ("STAMPED", "moves, mirrored"),
         Role::Stamped => ("STAMPED", "moves"),
     };
     let galley = |text: &str, color| {
