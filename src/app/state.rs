@@ -174,12 +174,20 @@ impl AppState {
         self.is_as_loaded() || self.shown_start().is_some() || self.previewed_pose().is_some()
     }
 
-    /// `Ok` unless a start is looked at instead of the pose that would be copied.
+    /// `Ok` unless something else is looked at than the pose that would be written, copied or mapped at.
     pub fn shows_its_pose(&self) -> Result<(), Reason> {
-        match self.previews.of_match() {
-            None => Ok(()),
-            Some(_) => Err(Reason("A start is previewed: show the real pose first.")),
+        if self.previews.live.is_some() {
+            return Err(Reason("A match is running."));
         }
+        if self.is_as_loaded() {
+            return Err(Reason(
+                "The stamped part is shown as loaded: show it at its pose first.",
+            ));
+        }
+        if self.is_chosen_preview() {
+            return Err(Reason("A start is previewed: show the real pose first."));
+        }
+        Ok(())
     }
 
     /// True while the stamped part is shown where its file has it, in spite of its pose.

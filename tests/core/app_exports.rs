@@ -237,3 +237,40 @@ fn mirrored_match(kind: JobKind) -> Result<JobOutput, String> {
         other => Ok(other),
     }
 }
+
+#[test]
+fn nothing_of_the_result_leaves_while_a_start_is_shown() {
+    let mut window = Window::with_both();
+    window.apply(MatchCommand::Run);
+    let kept = [
+        Action::CopyMatrix,
+        Action::CopyCommandLine,
+        Action::SaveReport,
+        Action::SaveRecord,
+        Action::SaveDeviations,
+        Action::SaveMatrix,
+        Action::SaveCards,
+        Action::SaveMoved,
+    ];
+    let refusals = |window: &Window| -> Vec<String> {
+        let refused = kept.map(|action| action.enabled(&window.state).err());
+        let reasons = refused.into_iter().flatten();
+        reasons.map(|Reason(reason)| reason.to_owned()).collect()
+    };
+    assert!(refusals(&window).is_empty());
+    assert_eq!(window.state.shown_instead(), None);
+    window.act(Action::Align);
+    window.act(Action::NextStart);
+    assert_eq!(window.state.shown_instead().as_deref(), Some("start 2"));
+    let why = "A start is previewed: show the real pose first.";
+    assert_eq!(refusals(&window), vec![why; kept.len()]);
+    let can_map = window.state.can_map().unwrap_err();
+    assert_eq!(can_map.0, why);
+    window.apply(MatchCommand::ShowStart(None));
+    assert!(refusals(&window).is_empty());
+    assert!(window.state.can_map().is_ok());
+    window.apply(PreviewCommand::AsLoaded(true));
+    let shown = window.state.shown_instead();
+    assert_eq!(shown.as_deref(), Some("the part as loaded"));
+    assert_eq!(refusals(&window).len(), kept.len());
+}

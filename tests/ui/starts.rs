@@ -101,3 +101,24 @@ fn a_section_of_a_first_pose_is_cut_once_in_each_window() {
         assert!(window.state_mut().picture().is_some(), "cut again");
     }
 }
+
+#[test]
+fn the_card_says_that_it_is_of_the_result_while_a_start_is_shown() {
+    let mut window = super::story::matched();
+    let label = {
+        let result = window.state().state().document.current_result();
+        result.expect("matched").verdict().label()
+    };
+    click(&mut window, "Align surface normals");
+    finish(&mut window);
+    click(&mut window, "Next start");
+    let said = format!("Result: {label}. Shown is start 2.");
+    assert!(window.query_by_label(&said).is_some(), "{said}");
+    click(&mut window, "Deviation");
+    finish(&mut window);
+    assert!(window.query_by_label("at start 2").is_some());
+    click(&mut window, "Back");
+    finish(&mut window);
+    assert!(window.query_by_label(&said).is_none());
+    assert!(window.query_by_label("at start 2").is_none());
+}

@@ -40,12 +40,14 @@ pub(super) fn part_unlocked(state: &AppState, role: Role) -> Result<(), Reason> 
     state.jobs.is_unlocked()
 }
 
-pub(super) fn has_stamped(state: &AppState) -> Result<(), Reason> {
-    state.document.has_part(Role::Stamped)
-}
-
 pub(super) fn shows_its_pose(state: &AppState) -> Result<(), Reason> {
     state.document.has_part(Role::Stamped)?;
+    state.shows_its_pose()
+}
+
+/// There is a result, and nothing else is shown.
+pub(super) fn shows_result(state: &AppState) -> Result<(), Reason> {
+    state.document.has_result()?;
     state.shows_its_pose()
 }
 
@@ -75,10 +77,6 @@ pub(super) fn has_two_pictures(state: &AppState) -> Result<(), Reason> {
         !is_alone,
         "Only the crash part has these colours: show a quantity that both parts have.",
     )
-}
-
-pub(super) fn has_result(state: &AppState) -> Result<(), Reason> {
-    state.document.has_result()
 }
 
 pub(super) fn has_mapping(state: &AppState) -> Result<(), Reason> {

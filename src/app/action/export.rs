@@ -1,6 +1,6 @@
 //! The menu *Export*: what leaves the program.
 
-use super::conditions::{always, has_result, has_stamped, has_valid_mapping, shows_its_pose};
+use super::conditions::{always, has_valid_mapping, shows_its_pose, shows_result};
 use super::row::keys::{ctrl_shift, function};
 use super::row::some;
 use super::{Action, ActionRow, Key, Keys, MenuGroup, Shortcut, toggled_dialog};
@@ -30,7 +30,10 @@ const COPY: &[ActionRow] = &[
         label: "Copy as command line",
         tooltip: "Copy the command that gives this pose again without the window, bit for bit",
         keys: Keys::NONE,
-        enabled: |state| state.document.can_copy_command_line(),
+        enabled: |state| {
+            state.document.can_copy_command_line()?;
+            state.shows_its_pose()
+        },
         command: |_| some(ExportCommand::CopyCommandLine),
     },
     ActionRow {
@@ -38,7 +41,10 @@ const COPY: &[ActionRow] = &[
         label: "Copy mapping as command line",
         tooltip: "Copy the command that maps at this pose with these choices without the window, bit for bit",
         keys: Keys::NONE,
-        enabled: |state| state.document.can_copy_map_command_line(),
+        enabled: |state| {
+            state.document.can_copy_map_command_line()?;
+            state.shows_its_pose()
+        },
         command: |_| some(ExportCommand::CopyMapCommandLine),
     },
     ActionRow {
@@ -101,7 +107,7 @@ const SAVE: &[ActionRow] = &[
         label: "Save report…",
         tooltip: "Write pictures, verdict, tables and settings as one HTML page",
         keys: Keys::NONE,
-        enabled: has_result,
+        enabled: shows_result,
         command: |_| save(Output::Report),
     },
     ActionRow {
@@ -109,7 +115,7 @@ const SAVE: &[ActionRow] = &[
         label: "Save record…",
         tooltip: "Write the whole match as JSON: matrix, verdict, settings, times",
         keys: Keys::NONE,
-        enabled: has_result,
+        enabled: shows_result,
         command: |_| save(Output::Record),
     },
     ActionRow {
@@ -117,7 +123,10 @@ const SAVE: &[ActionRow] = &[
         label: "Save node deviations…",
         tooltip: "Write the distance of every node from the other part, as CSV",
         keys: Keys::NONE,
-        enabled: |state| state.document.has_both_parts(),
+        enabled: |state| {
+            state.document.has_both_parts()?;
+            state.shows_its_pose()
+        },
         command: |_| save(Output::Deviations),
     },
     ActionRow {
@@ -125,7 +134,7 @@ const SAVE: &[ActionRow] = &[
         label: "Save matrix…",
         tooltip: "Write the pose as text",
         keys: Keys::NONE,
-        enabled: has_stamped,
+        enabled: shows_its_pose,
         command: |state| save(Output::Matrix(last_matrix(state))),
     },
     ActionRow {
@@ -133,7 +142,7 @@ const SAVE: &[ActionRow] = &[
         label: "Save LS-DYNA cards…",
         tooltip: "Write the cards that map the stamped part, and check them by reading them back",
         keys: Keys::NONE,
-        enabled: has_result,
+        enabled: shows_result,
         command: |_| save(Output::Cards(CardForm::ALL[0])),
     },
     ActionRow {
@@ -141,7 +150,7 @@ const SAVE: &[ActionRow] = &[
         label: "Save moved part…",
         tooltip: "Write the stamped part at its pose on the crash part",
         keys: Keys::NONE,
-        enabled: has_stamped,
+        enabled: shows_its_pose,
         command: |_| save(Output::Mesh(MeshOutput::Moved)),
     },
 ];

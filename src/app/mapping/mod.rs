@@ -209,7 +209,8 @@ impl AppState {
         // During the first match there is none yet, but it need not be begun.
         self.jobs.is_unlocked()?;
         self.jobs.are_parts_read()?;
-        self.document.has_pose_to_map_at()
+        self.document.has_pose_to_map_at()?;
+        self.shows_its_pose()
     }
 
     /// `Ok` if a mapping of a part that was neither matched nor moved may start.
@@ -221,7 +222,8 @@ impl AppState {
             ));
         }
         self.jobs.are_parts_read()?;
-        self.jobs.is_unlocked()
+        self.jobs.is_unlocked()?;
+        self.shows_its_pose()
     }
 
     /// The elements without values of the current mapping, the first of each reason in turn, at most

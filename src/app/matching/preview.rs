@@ -1,6 +1,6 @@
 //! Poses that are shown instead of the real one, without moving anything.
 
-use crate::app::PreviewCommand;
+use crate::app::{AppState, PreviewCommand};
 use crate::geometry::Similarity;
 
 /// A start or an iteration whose pose is shown.
@@ -68,5 +68,27 @@ impl Previews {
             PreviewCommand::Pin(preview) => self.pinned = preview.filter(|_| is_unlocked),
             PreviewCommand::ChooseStart(start) => self.chosen_start = start,
         }
+    }
+}
+
+impl AppState {
+    /// What is shown instead of the real pose; `None` while that is shown.
+    pub fn shown_instead(&self) -> Option<String> {
+        if self.previews.live.is_some() {
+            return Some("the running match".to_owned());
+        }
+        if self.is_as_loaded() {
+            return Some("the part as loaded".to_owned());
+        }
+        if self.shown_start().is_some() {
+            return Some(format!("start {}", self.previews.start? + 1));
+        }
+        self.previewed_pose()?;
+        Some(match self.preview()? {
+            Preview::Start(start) => format!("the end of start {}", start + 1),
+            Preview::Step { start, iteration } => {
+                format!("start {}, iteration {}", start + 1, iteration + 1)
+            }
+        })
     }
 }

@@ -35,7 +35,7 @@ pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let held = HeldHeight::read(ui, (result.stamp, state.document.stamp().parts));
     card(ui, |ui| {
         let first = ui.cursor().top();
-        if state.previews.of_match().is_some() {
+        if state.is_preview() {
             // The figures are those of the result, not of the pose that is looked at.
             ui.multiply_opacity(STALE);
         }
@@ -164,21 +164,28 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
     let lengths = state.lengths();
     let verdict = result.verdict();
     ui.horizontal(|ui| {
-        let verdict = (
-            format!("{} {}", verdict.sign(), verdict.label()) + &pose_number(state, result),
-            verdict_color(palette, verdict),
-        );
-        let preview = state.previews.of_match().map(|preview| {
-            let title = format!("Preview of start {}", preview.start() + 1);
-            (title, palette.secondary)
-        });
-        let (text, color) = preview.unwrap_or(verdict);
-        let label = ui.label(RichText::new(text).color(color).size(17.0));
+        // As high with a preview as without.
+        ui.set_min_height(ui.spacing().interact_size.y);
+        let shown = state.shown_instead();
+        let number = pose_number(state, result);
+        let text = match &shown {
+            Some(shown) => {
+                let text = format!("Result: {}{number}. Shown is {shown}.", verdict.label());
+                RichText::new(text).color(palette.secondary)
+            }
+            None => {
+                let text = format!("{} {}{number}", verdict.sign(), verdict.label());
+                RichText::new(text)
+                    .color(verdict_color(palette, verdict))
+                    .size(17.0)
+            }
+        };
+        let label = ui.add(egui::Label::new(text).truncate());
         ui.ctx().accesskit_node_builder(label.id, |node| {
             node.set_live(egui::accesskit::Live::Polite);
         });
         // An alternative is told from the best pose, whatever the tolerance.
-        if result.alternative.is_none() {
+        if result.alternative.is_none() && shown.is_none() {
             let right = egui::Layout::right_to_left(egui::Align::Center);
             ui.with_layout(right, |ui| tolerance_ui(ui, state, result, commands));
         }

@@ -109,10 +109,16 @@ fn head_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison, commands: &mu
             }
         }
         freshness_ui(ui, state, commands);
+        if let Some(shown) = measured_at(state) {
+            ui.label(RichText::new(format!("at {shown}")).color(Palette::of(ui).check));
+        }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if ui.button("Copy as CSV").clicked() {
                 let text = csv(state, comparison);
-                let what = "Deviation (CSV)".to_owned();
+                let what = match measured_at(state) {
+                    Some(shown) => format!("Deviation at {shown} (CSV)"),
+                    None => "Deviation (CSV)".to_owned(),
+                };
                 commands.push(ExportCommand::CopyText { text, what }.into());
             }
             let sign = if comparison.deviation.is_signed {
@@ -126,6 +132,12 @@ fn head_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison, commands: &mu
             );
         });
     });
+}
+
+/// The pose that the numbers stand for, where it is not that of the part.
+fn measured_at(state: &AppState) -> Option<String> {
+    let is_of_shown = state.freshness() == Freshness::Current;
+    state.shown_instead().filter(|_| is_of_shown)
 }
 
 fn freshness_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
