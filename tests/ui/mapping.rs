@@ -6,8 +6,8 @@ use std::process::Command as Process;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use shapematch::app::{
-    Action, Axis, BottomTab, ColorBy, ExportCommand, FileCommand, FurtherPose, HistoryCommand,
-    MapCommand, MoveCommand, ViewCommand,
+    Action, Axis, BottomTab, ColorBy, ExportCommand, FileCommand, FreeWindow, FurtherPose,
+    HistoryCommand, MapCommand, MoveCommand, ViewCommand,
 };
 use shapematch::pipeline::map::WriteKind;
 use shapematch::pipeline::outputs::Output;
@@ -614,5 +614,26 @@ fn the_left_window_says_that_its_values_are_mapped() {
         click(&mut window, picture);
         finish(&mut window);
         assert_eq!(titles(&window), [false, true], "{picture}");
+    }
+}
+
+#[test]
+fn a_section_beside_a_mapping_cuts_both_parts_and_an_empty_window_says_what_is_not_drawn() {
+    let mut window = matched();
+    click(&mut window, "Map");
+    finish(&mut window);
+    run(&mut window, ViewCommand::ToggleMoveOver);
+    let says = |window: &Harness<'static, Shell>, what: &str| {
+        window.query_all_by_label_contains(what).next().is_some()
+    };
+    run(&mut window, ViewCommand::SetFreeWindow(FreeWindow::Nothing));
+    assert!(says(&window, "Not drawn: the left window shows the mapped"));
+    run(&mut window, ViewCommand::SetFreeWindow(FreeWindow::Section));
+    let begin = std::time::Instant::now();
+    while !says(&window, "Widest gap") {
+        assert!(!says(&window, "The plane meets the crash part alone"));
+        assert!(begin.elapsed().as_secs() < 60, "no gap is measured");
+        window.run_steps(1);
+        std::thread::sleep(std::time::Duration::from_millis(10));
     }
 }

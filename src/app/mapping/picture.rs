@@ -165,6 +165,12 @@ impl AppState {
         self.view.is_moved_over && self.is_mapping_shown()
     }
 
+    /// True if the stamped part is not in the left window, which shows the mapping, though it was moved there.
+    pub fn is_mapped_alone(&self) -> bool {
+        let is_compared = self.is_mapped_blinking() || self.mapped_wipe().is_some();
+        self.is_mapping_apart() && !is_compared
+    }
+
     /// True if both sides of the mapping show one quantity, so that they can be wiped and blinked between in
     /// the left window.
     pub fn can_compare_mapped(&self) -> bool {

@@ -1,16 +1,17 @@
 //! What the choice, look and visibility of parts change.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
-use super::{MoreAlike, PartCommand, PartRef, PartsState};
+use super::{MoreAlike, NewPart, PartCommand, PartRef, PartsState};
 use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
-use crate::app::{AppState, Document, Effect, JobBoard, Part};
+use crate::app::{AppState, Document, Effect, JobBoard, LogStep, NoticeLevel, Part, facts};
 use crate::formats::Selection;
-use crate::jobs::JobKey;
-use crate::pipeline::load::LoadSettings;
+use crate::jobs::{JobKey, PartFacts};
+use crate::pipeline::load::{LoadSettings, LoadedPart};
 use crate::role::Role;
-use crate::text::counted;
+use crate::text::{counted, tidy_factor};
 
 impl AppState {
     /// True if a part of a deck is matched, or will be as soon as what was chosen is made.

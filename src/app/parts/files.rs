@@ -16,7 +16,7 @@ use crate::pipeline::load::{LoadSettings, LoadedPart, same_parts_line, usual_sel
 use crate::pipeline::names::file_name;
 use crate::pipeline::project::is_project;
 use crate::role::{PerRole, Role};
-use crate::text::{counted, tidy_factor};
+use crate::text::counted;
 
 /// A part that was read, or made again from the model in memory.
 pub(in crate::app) struct NewPart {

@@ -178,7 +178,11 @@ fn away_ui(ui: &mut Ui, rect: Rect, state: &AppState, commands: &mut Vec<Command
     centered(ui, rect, size, |ui| {
         ui.vertical_centered(|ui| {
             role_mark(ui, Role::Stamped);
-            ui.label("Moved to the left window");
+            ui.label(if state.is_mapped_alone() {
+                "Not drawn: the left window shows the mapped crash part"
+            } else {
+                "Moved to the left window"
+            });
             ui.add_space(UNIT);
             clickable(ui, |ui| {
                 let look = ("Move back", Look::Plain, vec2(128.0, TALL));

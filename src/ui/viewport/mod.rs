@@ -267,8 +267,10 @@ impl Viewports {
         let shown = visible_parts::visible_parts(state, view);
         let unused = self.unused.drawables((state, view), look, &shown, ui.ctx());
         let unused_outlines = self.unused.outlines(view.window, look, &shown);
+        let only_cut = visible_parts::only_cut(state, view, &shown);
         let instances: Vec<_> = shown
             .into_iter()
+            .chain(only_cut.iter().cloned())
             .filter_map(|instance| Some((instance.source(state)?, instance)))
             .collect();
         let sources: Vec<_> = instances.iter().map(|(source, _)| source.clone()).collect();
@@ -290,7 +292,7 @@ impl Viewports {
                 let mesh = mesh.or_else(|| last.as_ref().filter(is_same_part).cloned())?;
                 Some((mesh, instance))
             });
-        let drawn: Vec<_> = drawn.collect();
+        let mut drawn: Vec<_> = drawn.collect();
         let placed: Vec<_> = drawn
             .iter()
             .map(|(mesh, instance)| {
@@ -300,6 +302,7 @@ impl Viewports {
             .collect();
         self.sections.update(view.window, state, &placed, ui.ctx());
         let cuts = self.sections.cuts(view.window, state);
+        drawn.retain(|(_, instance)| !only_cut.contains(instance));
         let fields = self.fields.get(view.window, state, &drawn, ui.ctx());
         let layers = drawn
             .into_iter()

@@ -128,6 +128,30 @@ pub(super) fn visible_parts(state: &AppState, view: &ViewFrame) -> Vec<PartInsta
     }
 }
 
+/// The parts that a section cuts in the shared window though it does not draw them: the outlines are those of both
+/// parts, whichever of them the mapping or a blink leaves out.
+pub(super) fn only_cut(
+    state: &AppState,
+    view: &ViewFrame,
+    drawn: &[PartInstance],
+) -> Vec<PartInstance> {
+    let is_shared = view.window == Role::Crash && view.over >= 1.0 && state.view.is_moved_over;
+    if !is_shared || state.inspect.section.shown().is_none() {
+        return Vec::new();
+    }
+    let is_left_out = |role: &Role| {
+        let is_drawn = drawn.iter().any(|instance| instance.role == *role);
+        state.document.part(*role).is_some() && !is_drawn
+    };
+    let left_out = Role::ALL.into_iter().filter(is_left_out);
+    left_out
+        .flat_map(|role| match role {
+            Role::Crash => vec![crash(state)],
+            Role::Stamped => all_files(state, full(role, view.pose)),
+        })
+        .collect()
+}
+
 /// Makes ghosts of the parts that would hide or tint the colours of another one.
 fn fade(state: &AppState, view: &ViewFrame, parts: &mut [PartInstance]) {
     let is_shared = view.window == Role::Crash && state.view.is_moved_over;
