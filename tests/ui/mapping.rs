@@ -637,3 +637,51 @@ fn a_section_beside_a_mapping_cuts_both_parts_and_an_empty_window_says_what_is_n
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
 }
+
+/// Frames until the values that are made off the frame are there.
+fn draw(window: &mut Harness<'static, Shell>) {
+    finish(window);
+    for _ in 0..100 {
+        window.run_steps(1);
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+}
+
+/// The numbers in the left 3D window.
+fn numbers_beside_crash(window: &Harness<'static, Shell>) -> Vec<String> {
+    let is_crash = |label: String| label.starts_with("Crash part, ");
+    let area = window.get_by(|node| node.label().is_some_and(is_crash));
+    let area = area.rect();
+    let seen = texts(window).into_iter();
+    let inside = seen.filter(|text| area.contains_rect(text.rect));
+    let numbers = inside.filter(|text| text.text.parse::<f64>().is_ok());
+    numbers.map(|text| text.text).collect()
+}
+
+#[test]
+fn a_window_without_a_part_says_nothing_of_the_colours_in_the_other() {
+    let by_thickness = |window: &mut Harness<'static, Shell>| {
+        let mut display = window.state().state().view.display.clone();
+        display.color_by = ColorBy::Thickness;
+        run(window, ViewCommand::SetDisplay(Box::new(display)));
+        draw(window);
+    };
+    let close = FileCommand::Close(Role::Stamped);
+    let mut seen = Vec::new();
+    for is_closed_first in [true, false] {
+        let mut window = window();
+        click(&mut window, "Open the example pair");
+        finish(&mut window);
+        if is_closed_first {
+            run(&mut window, close.clone());
+            by_thickness(&mut window);
+        } else {
+            by_thickness(&mut window);
+            run(&mut window, close.clone());
+        }
+        draw(&mut window);
+        seen.push(numbers_beside_crash(&window));
+    }
+    assert!(!seen[0].is_empty());
+    assert_eq!(seen[0], seen[1]);
+}

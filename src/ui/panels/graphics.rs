@@ -139,13 +139,15 @@ fn pane_ui(
     let is_free = state.free_window() == Some(FreeWindow::Nothing) && !is_flying;
     let is_away = role == Role::Stamped && is_free;
     let is_drawing = role == Role::Stamped && state.free_window() == Some(FreeWindow::Section);
-    if is_drawing && !is_flying {
-        drawing_ui(ui, state, viewports, commands);
+    let is_drawn = is_drawing && !is_flying;
+    let has_part = state.document.part(role).is_some();
+    if has_part && !is_away && !is_drawn {
+        viewports.show(ui, role, state, commands);
         return;
     }
-    let has_part = state.document.part(role).is_some();
-    if has_part && !is_away {
-        viewports.show(ui, role, state, commands);
+    viewports.show_none(role);
+    if is_drawn {
+        drawing_ui(ui, state, viewports, commands);
         return;
     }
     let rect = ui.max_rect();

@@ -148,6 +148,7 @@ impl FieldStore {
     ) -> Vec<Option<FieldLook>> {
         let kind = FieldKind::of(state.color_by(window));
         if let Some(kind @ (FieldKind::Deviation | FieldKind::Overlap)) = kind {
+            self.forget(window);
             let of = |(mesh, instance): &(Arc<ShownMesh>, PartInstance)| {
                 compared(kind, state, instance.role, mesh)
             };
@@ -192,6 +193,13 @@ impl FieldStore {
             })
         };
         found.into_iter().map(|field| look(field?)).collect()
+    }
+
+    /// A window draws nothing: its last values say nothing of the colours in the other.
+    pub fn forget(&mut self, window: Role) {
+        *self.ranges.get_mut(window) = None;
+        *self.summaries.get_mut(window) = None;
+        *self.n_shown.get_mut(window) = 0;
     }
 
     /// Figures of the values that a window shows; those of deviation and overlap are measured elsewhere.

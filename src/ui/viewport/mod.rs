@@ -148,6 +148,11 @@ impl Viewports {
         self.keep_moving(ui, role);
     }
 
+    /// A window shows something else than parts.
+    pub fn show_none(&mut self, role: Role) {
+        self.fields.forget(role);
+    }
+
     /// The section laid flat, in the rest of `ui`.
     pub fn section_ui(&self, ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let Some(plane) = state.inspect.section.shown() else {
