@@ -4,6 +4,15 @@ use super::{Document, JobBoard, MatchResult, Reason};
 use crate::jobs::JobKey;
 use crate::role::Role;
 
+/// What became of a part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum PartChange {
+    /// Its lengths are multiplied by another factor.
+    Unit,
+    /// It was read again, or other pieces of it were chosen.
+    Part,
+}
+
 impl JobBoard {
     /// The job that keeps files, levels and poses as they are, if one runs.
     pub fn locking_job(&self) -> Option<JobKey> {
@@ -60,10 +69,25 @@ impl Document {
     /// The match of the parts as they are, wherever the stamped part lies by now.
     pub fn match_of_parts(&self) -> Result<&MatchResult, Reason> {
         let result = self.result.as_ref().ok_or(Reason("Run a match first."))?;
+        match self.change_after(result) {
+            None => Ok(result),
+            Some(PartChange::Unit) => {
+                Err(Reason("The unit was changed after the match: match again."))
+            }
+            Some(PartChange::Part) => {
+                Err(Reason("A part was changed after the match: match again."))
+            }
+        }
+    }
+
+    /// What became of the parts of a match; `None` while they are the same.
+    pub(super) fn change_after(&self, result: &MatchResult) -> Option<PartChange> {
         if result.stamp.parts == self.stamp().parts {
-            Ok(result)
+            None
+        } else if result.length_factors != self.length_factors() {
+            Some(PartChange::Unit)
         } else {
-            Err(Reason("A part was exchanged after the match: match again."))
+            Some(PartChange::Part)
         }
     }
 

@@ -79,6 +79,8 @@ pub struct MatchResult {
     pub alternative: Option<usize>,
     /// The state of the document right after the result was taken over.
     pub stamp: Stamp,
+    /// What the lengths of both parts were multiplied by then.
+    pub length_factors: PerRole<Option<f64>>,
 }
 
 impl MatchResult {
@@ -190,6 +192,11 @@ impl Document {
             },
             pose: self.pose.revision,
         }
+    }
+
+    /// The factors that the lengths of the parts are multiplied by.
+    pub(super) fn length_factors(&self) -> PerRole<Option<f64>> {
+        PerRole::from_fn(|role| self.part(role).map(Part::length_factor))
     }
 
     /// The numbers of all parts there are, those of further stamped files too.

@@ -278,6 +278,10 @@ impl AppState {
         if self.document.result.is_some() && self.document.current_result().is_none() {
             self.view.sections.touch(Section::Match);
         }
+        // What is asked about the files is answered before anything else.
+        if self.open_question(Section::Load).is_some() {
+            self.view.sections.touch(Section::Load);
+        }
     }
 
     /// The card of section 3 says the result; a toast over the part says it only where the card is not

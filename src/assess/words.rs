@@ -429,11 +429,8 @@ fn read_errors(in_source: u64, in_target: u64) -> String {
 }
 
 fn different_units(size_ratio: f64, unit: UnitGuess) -> String {
-    let [larger, times] = if size_ratio < 1.0 {
-        ["stamped", &rounded(size_ratio.recip())]
-    } else {
-        ["crash", &rounded(size_ratio)]
-    };
+    let larger = if size_ratio < 1.0 { "stamped" } else { "crash" };
+    let times = rounded(unit.times(size_ratio));
     format!(
         "the {larger} part is about {times} × larger: is the stamped part in {} and the crash part in \
          {}? No factor was applied",

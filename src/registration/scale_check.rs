@@ -35,6 +35,13 @@ impl UnitGuess {
         self.source.factor_to(self.target)
     }
 
+    /// How many times as large the larger part is: by the factor between the units where the sizes differ by it.
+    pub fn times(self, size_ratio: f64) -> f64 {
+        let [measured, factor] = [size_ratio, self.factor()].map(|times| times.max(times.recip()));
+        let is_factor = (measured / factor).ln().abs() < SAME_FACTOR.ln();
+        if is_factor { factor } else { measured }
+    }
+
     /// Every other unit against millimetres, in which sheet parts are modelled.
     fn all() -> impl Iterator<Item = Self> {
         let mm = LengthUnit::Millimeter;
@@ -81,6 +88,9 @@ const NEAR_FACTOR: f64 = 1.7;
 /// It may differ by this one from a factor to or from a unit in which parts rarely are: any two parts come near one by
 /// chance.
 const NEAR_RARE_FACTOR: f64 = 1.1;
+
+/// Sizes that differ by the factor between units, to within this one, are those of one part in two units.
+const SAME_FACTOR: f64 = 1.05;
 
 /// The unit factor nearest to `size_ratio`, if it comes near one.
 pub fn guess_unit(size_ratio: f64) -> Option<UnitGuess> {

@@ -437,3 +437,36 @@ fn a_tolerance_that_was_allowed_holds_for_these_parts() {
     window.act(Action::Undo);
     assert_eq!(tolerance(&window), 0.0);
 }
+
+#[test]
+fn the_question_about_the_unit_stays_in_sight() {
+    let mut window = Window::new();
+    window.open("stamped.k", Role::Crash);
+    window.open("says_gpa.k", Role::Stamped);
+    assert_eq!(window.state.unit_hint(), None);
+    assert_eq!(window.state.view.sections.in_use(), Section::Reduce);
+    window.open("metres.k", Role::Stamped);
+    assert!(window.state.unit_hint().is_some());
+    assert_eq!(window.state.view.sections.in_use(), Section::Load);
+}
+
+#[test]
+fn a_unit_that_was_changed_after_the_match_is_named() {
+    let mut window = Window::with_both();
+    window.act(Action::MatchOrStop);
+    window.apply(FileCommand::SetLengthFactor {
+        role: Role::Stamped,
+        factor: 2.0,
+    });
+    let stale = window.state.stale(Section::Match).unwrap();
+    assert_eq!(stale.reason, "the unit was changed after the match");
+    let why = window.state.document.match_of_parts().unwrap_err().0;
+    assert!(why.starts_with("The unit was changed"), "{why}");
+    window.act(Action::Undo);
+    window.apply(PartCommand::UseOnly(PartRef {
+        role: Role::Crash,
+        id: 12,
+    }));
+    let stale = window.state.stale(Section::Match).unwrap();
+    assert_eq!(stale.reason, "a part was changed after the match");
+}

@@ -304,7 +304,7 @@ fn a_part_exchanged_after_the_match_is_still_exchanged_when_the_project_is_opene
         assert!(state.document.result.is_some(), "{when}");
         assert!(state.document.match_of_parts().is_err(), "{when}");
         let stale = state.stale(Section::Match).map(|stale| stale.reason);
-        let reason = "a part was exchanged after the match";
+        let reason = "a part was changed after the match";
         assert_eq!(stale, Some(reason), "{when}");
     };
     let (_folder, [crash, stamped, path]) = folder();

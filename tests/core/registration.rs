@@ -674,6 +674,11 @@ fn other_units_are_guessed_and_not_applied() {
         assert_eq!(guess.is_some(), factor.is_some(), "{ratio}");
         assert!(guess.zip(factor).is_none_or(is_it), "{ratio} {guess:?}");
     }
+    // One part in two units differs by the factor between them, whatever the meshes make of its area.
+    for (ratio, times) in [(0.001_001, 1000.0), (999.2, 1000.0), (620.0, 620.0)] {
+        let found = guess_unit(ratio).unwrap().times(ratio);
+        assert!((found / times - 1.0).abs() < 1e-9, "{ratio} {found}");
+    }
 }
 
 /// Numbers and first poses of the starts as they begin.

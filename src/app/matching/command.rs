@@ -13,6 +13,7 @@ pub enum MatchCommand {
     SetRemedy {
         /// Name of the undo step.
         name: String,
+        /// All settings.
         recipe: Box<MatchRecipe>,
         /// The match that follows belongs to the same undo step.
         is_matched: bool,

@@ -194,7 +194,7 @@ impl AppState {
     fn units_cause(&self, assessment: &Assessment) -> Option<Cause> {
         let check = &assessment.scale_check;
         let evidence = match (&check.unit, self.unit_hint()) {
-            (Some(_), _) => larger_part(check.size_ratio),
+            (Some(unit), _) => larger_part(check.size_ratio, unit.times(check.size_ratio)),
             // Among the parts of a whole model sizes say nothing, but the files do.
             (None, Some(hint)) => sentence(&hint.text()),
             (None, None) => {
@@ -350,12 +350,12 @@ impl AppState {
     }
 }
 
-/// Which part is how many times as large, from the size of the crash part over that of the stamped one.
-fn larger_part(size_ratio: f64) -> String {
-    let ([larger, other], times) = if size_ratio < 1.0 {
-        (["stamped", "crash"], size_ratio.recip())
+/// Which part is so many times as large, from the size of the crash part over that of the stamped one.
+fn larger_part(size_ratio: f64, times: f64) -> String {
+    let [larger, other] = if size_ratio < 1.0 {
+        ["stamped", "crash"]
     } else {
-        (["crash", "stamped"], size_ratio)
+        ["crash", "stamped"]
     };
     format!(
         "The {larger} part is {} times as large as the {other} part.",

@@ -35,10 +35,12 @@ impl MatchState {
         let before = work.document.stamped_center();
         let gesture = self.remedy_gesture.take();
         let step = ("Match".to_owned(), gesture);
+        let length_factors = work.document.length_factors();
         take_pose_as_result(work, step, pose, |stamp| MatchResult {
             run: run.into(),
             alternative: None,
             stamp,
+            length_factors,
         });
         // Its phases have their own rows; counting the whole again would double the total.
         work.log

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::roles::{offer_swap, remember_roles, stamped_word};
-use super::{FileCommand, Guess, PartRef, PartsState};
+use super::{FileCommand, Guess, PartsState};
 use crate::app::follow_up::FollowUp;
 use crate::app::mapping::further_dropped;
 use crate::app::work::Work;

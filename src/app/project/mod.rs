@@ -293,11 +293,16 @@ fn part_entry(part: &Part) -> PartEntry {
 
 impl MatchResult {
     /// A stored result, in force for these inputs.
-    fn restored(entry: ResultEntry, stamp: crate::jobs::Stamp) -> Self {
+    fn restored(
+        entry: ResultEntry,
+        stamp: crate::jobs::Stamp,
+        length_factors: PerRole<Option<f64>>,
+    ) -> Self {
         Self {
             run: std::sync::Arc::new(entry.run).into(),
             alternative: entry.alternative,
             stamp,
+            length_factors,
         }
     }
 }

@@ -180,7 +180,7 @@ impl AppState {
         });
         document.result = project.result.clone().map(|entry| {
             let stamp = result_stamp(&entry, document.stamp(), is_same);
-            MatchResult::restored(entry, stamp)
+            MatchResult::restored(entry, stamp, document.length_factors())
         });
         if let Some(window) = window {
             for label in window.labels.iter().cloned() {

@@ -1,6 +1,7 @@
 //! The sections of the left column, what in them is out of date, and which bottom tabs have content.
 
 use super::BottomTab;
+use crate::app::conditions::PartChange;
 use crate::app::{AppState, Command, FileCommand, MoveCommand, Part};
 use crate::jobs::JobKey;
 use crate::role::Role;
@@ -141,13 +142,13 @@ impl AppState {
 
     fn match_stale_reason(&self) -> Option<&'static str> {
         let result = self.document.result.as_ref()?;
-        let stamp = self.document.stamp();
-        if result.stamp.parts != stamp.parts {
-            Some("a part was exchanged after the match")
-        } else if result.stamp.pose != stamp.pose {
-            Some("the stamped part was moved after the match")
-        } else {
-            None
+        match self.document.change_after(result) {
+            Some(PartChange::Unit) => Some("the unit was changed after the match"),
+            Some(PartChange::Part) => Some("a part was changed after the match"),
+            None if result.stamp.pose != self.document.stamp().pose => {
+                Some("the stamped part was moved after the match")
+            }
+            None => None,
         }
     }
 
