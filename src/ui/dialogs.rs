@@ -12,7 +12,7 @@ use self::desktop::file_dialog;
 use self::question::{Question, titles};
 use super::background::run_once;
 use super::overlays::modal;
-use super::path_prompt::{self, Completion, plain_words};
+use super::path_prompt::{self, Caret, Completion, plain_words};
 use super::theme::{Palette, UNIT};
 use super::widgets::{caption, large_button, paragraph};
 use crate::app::{Command, ExportCommand, FileCommand, MapCommand, PictureChoice, ProjectCommand};
@@ -103,8 +103,7 @@ impl Found {
 struct Prompt {
     question: Question,
     text: String,
-    /// The text stands there as a proposal: the first letter replaces it.
-    is_proposed: bool,
+    caret: Caret,
     /// What is wrong with the path.
     note: Option<String>,
     /// The folder that would have to be made.
@@ -118,7 +117,7 @@ impl Prompt {
         Self {
             question,
             text,
-            is_proposed: true,
+            caret: Caret::OverAll,
             note: None,
             missing: None,
             names: Vec::new(),
@@ -127,7 +126,7 @@ impl Prompt {
 
     fn with_note(question: Question, path: &Path, note: String) -> Self {
         Self {
-            is_proposed: false,
+            caret: Caret::Kept,
             note: Some(note),
             ..Self::new(question, path.display().to_string())
         }
@@ -288,6 +287,7 @@ impl Dialogs {
                     let prompt = self.prompt.as_mut().filter(|prompt| prompt.text == typed);
                     if let Some(prompt) = prompt {
                         prompt.text = completion.text;
+                        prompt.caret = Caret::AtEnd;
                         prompt.names = completion.names;
                     }
                 }
@@ -472,7 +472,7 @@ fn prompt_content(ui: &mut egui::Ui, prompt: &mut Prompt) -> Option<PromptAnswer
         },
     );
     let before = prompt.text.clone();
-    let field = path_prompt::field_ui(ui, &mut prompt.text, &mut prompt.is_proposed);
+    let field = path_prompt::field_ui(ui, &mut prompt.text, &mut prompt.caret);
     if prompt.text != before {
         (prompt.note, prompt.missing) = (None, None);
         prompt.names.clear();
@@ -490,6 +490,7 @@ fn prompt_content(ui: &mut egui::Ui, prompt: &mut Prompt) -> Option<PromptAnswer
     }
     if let Some(name) = path_prompt::names_ui(ui, &prompt.names) {
         prompt.text = path_prompt::with_name(&prompt.text, &name);
+        prompt.caret = Caret::AtEnd;
         prompt.names.clear();
     }
     if let Some(note) = &prompt.note {

@@ -22,9 +22,29 @@ pub(super) struct FieldAnswer {
     pub wants_completion: bool,
 }
 
-/// The field; a proposal is selected as a whole at first, so that typing replaces it.
-pub(super) fn field_ui(ui: &mut Ui, text: &mut String, is_proposed: &mut bool) -> FieldAnswer {
+/// Where the caret is put once the text was set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum Caret {
+    /// Where it is.
+    #[default]
+    Kept,
+    /// The text is a proposal and selected as a whole: typing replaces it.
+    OverAll,
+    /// Typing goes on with the text.
+    AtEnd,
+}
+
+/// The field.
+pub(super) fn field_ui(ui: &mut Ui, text: &mut String, caret: &mut Caret) -> FieldAnswer {
     let id = ui.make_persistent_id("path");
+    let caret = std::mem::take(caret);
+    if caret == Caret::AtEnd {
+        // Before the field takes the keys of this frame.
+        let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
+        let end = CCursorRange::one(CCursor::new(text.chars().count()));
+        state.cursor.set_char_range(Some(end));
+        state.store(ui.ctx(), id);
+    }
     let has_focus = ui.memory(|memory| memory.has_focus(id));
     // Taken before the field sees it.
     let is_tab = |input: &mut egui::InputState| input.consume_key(Modifiers::NONE, Key::Tab);
@@ -46,13 +66,9 @@ pub(super) fn field_ui(ui: &mut Ui, text: &mut String, is_proposed: &mut bool) -
     if !response.has_focus() && !response.lost_focus() {
         response.request_focus();
     }
-    if std::mem::take(is_proposed) {
+    if caret == Caret::OverAll {
         let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
         shown.state.cursor.set_char_range(Some(all));
-        shown.state.store(ui.ctx(), id);
-    } else if wants_completion {
-        let end = CCursorRange::one(CCursor::new(text.chars().count()));
-        shown.state.cursor.set_char_range(Some(end));
         shown.state.store(ui.ctx(), id);
     }
     FieldAnswer {

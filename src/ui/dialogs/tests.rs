@@ -202,3 +202,53 @@ fn a_question_darkens_the_window_unless_a_processor_draws_it() {
         assert!(dialogs.is_open());
     }
 }
+
+#[test]
+fn typing_goes_on_after_a_completed_path() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("parts")).unwrap();
+    let end = std::path::MAIN_SEPARATOR;
+    let whole = format!("{}{end}parts{end}", folder.path().display());
+    let typed = format!("{}{end}pa", folder.path().display());
+    let ctx = egui::Context::default();
+    let mut dialogs = Dialogs {
+        prompt: Some(Prompt::new(Question::OpenProject, String::new())),
+        ..Dialogs::default()
+    };
+    let frame = |dialogs: &mut Dialogs, events: Vec<egui::Event>| {
+        let input = egui::RawInput {
+            events,
+            ..egui::RawInput::default()
+        };
+        let mut output = ctx.run_ui(input, |ui| {
+            dialogs.answers(ui.ctx());
+            dialogs.show(ui.ctx(), false, &mut Vec::new());
+        });
+        output.textures_delta.clear();
+        dialogs.prompt.as_ref().unwrap().text.clone()
+    };
+    let tab = egui::Event::Key {
+        key: egui::Key::Tab,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers: egui::Modifiers::NONE,
+    };
+    for _ in 0..3 {
+        frame(&mut dialogs, Vec::new());
+    }
+    assert_eq!(
+        frame(&mut dialogs, vec![egui::Event::Text(typed.clone())]),
+        typed
+    );
+    frame(&mut dialogs, vec![tab]);
+    for _ in 0..500 {
+        if frame(&mut dialogs, Vec::new()) == whole {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let door = egui::Event::Text("door.shapematch".to_owned());
+    let text = frame(&mut dialogs, vec![door]);
+    assert_eq!(text, format!("{whole}door.shapematch"));
+}
