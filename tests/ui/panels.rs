@@ -341,3 +341,34 @@ fn each_figure_of_a_match_is_said_once_beside_the_windows() {
     assert_eq!(count(&format!("{} starts", n_starts.expect("a result"))), 0);
     assert_eq!(count(" pose fits nearly as well"), 1);
 }
+
+#[test]
+fn a_menu_that_is_higher_than_the_window_scrolls_to_its_last_entry() {
+    let mut window = window();
+    window.set_size(egui::vec2(800.0, 400.0));
+    window.run_steps(3);
+    click(&mut window, "Export");
+    window.run_steps(3);
+    let bar = window.get_by_label("Export").rect();
+    let seen = |window: &Window, name: &str| {
+        let mut all = texts(window).into_iter();
+        all.find(|text| text.text.starts_with(name))
+    };
+    let first = seen(&window, "Copy matrix").expect("the first entry");
+    assert!(first.rect.top() > bar.bottom() - 1.0, "beside its button");
+    assert!(seen(&window, "Save part as").is_none(), "no room for it");
+    window.hover_at(first.rect.center());
+    window.run_steps(2);
+    for _ in 0..20 {
+        window.event(egui::Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Point,
+            delta: egui::vec2(0.0, -100.0),
+            phase: egui::TouchPhase::Move,
+            modifiers: egui::Modifiers::NONE,
+            source: egui::MouseWheelSource::Wheel,
+        });
+        window.run_steps(2);
+    }
+    let last = seen(&window, "Save part as").expect("the last entry");
+    assert!(last.clip.contains_rect(last.rect.shrink(1.0)));
+}

@@ -2,8 +2,8 @@
 
 use egui::containers::menu::MenuState;
 use egui::{
-    Align, Button, Event, Id, Key, Layout, MenuBar, Modifiers, Popup, Response, RichText, Sense,
-    Ui, pos2, vec2,
+    Align, Button, Event, Id, Key, Layout, MenuBar, Modifiers, Popup, Response, RichText,
+    ScrollArea, Sense, Ui, pos2, vec2,
 };
 
 use super::rail::fold_ui;
@@ -28,11 +28,12 @@ pub fn top_bar_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         if room < NARROW {
             // One menu of menus.
             let all = ui.menu_button("☰ Menu", |ui| {
-                menus_ui(ui, state, commands);
+                menus_ui(ui, state, 0.0, commands);
             });
             turn_by_keys(ui, &[all.response]);
         } else {
-            let menus = menus_ui(ui, state, commands);
+            let bottom = ui.max_rect().bottom();
+            let menus = menus_ui(ui, state, bottom, commands);
             turn_by_keys(ui, &menus);
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -45,20 +46,39 @@ pub fn top_bar_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
 }
 
+/// Air between a menu and what it hangs from, and below it.
+const MENU_GAP: f32 = 6.0;
 /// Room below which the menus are one, and below which the unit is left out.
 const NARROW: f32 = 480.0;
 const MEDIUM: f32 = 560.0;
 
-fn menus_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) -> Vec<Response> {
+/// The menus, each of which opens below `top` or, where it has no bar, anywhere in the window.
+fn menus_ui(ui: &mut Ui, state: &AppState, top: f32, commands: &mut Vec<Command>) -> Vec<Response> {
     let mut titles = Vec::new();
     for menu in Menu::ALL {
         let shown = ui.menu_button(menu.label(), |ui| {
-            ui.set_min_width(248.0);
-            menu_ui(ui, state, menu, commands);
+            scrolling(ui, top, |ui| menu_ui(ui, state, menu, commands));
         });
         titles.push(shown.response);
     }
     titles
+}
+
+/// The items of a menu, which scroll where the window below `top` is lower than they are.
+fn scrolling(ui: &mut Ui, top: f32, items: impl FnOnce(&mut Ui)) {
+    let frame = ui.spacing().menu_margin.sum().y + 2.0 * MENU_GAP;
+    let room = ui.ctx().content_rect().bottom() - top - frame;
+    ScrollArea::vertical().max_height(room).show(ui, |ui| {
+        ui.set_min_width(248.0);
+        items(ui);
+    });
+}
+
+/// What the keyboard comes to is seen.
+fn keep_in_sight(item: &Response) {
+    if item.gained_focus() {
+        item.scroll_to_me(None);
+    }
 }
 
 /// F10 or Alt opens the first menu or closes the open one; Left and Right go from one open menu to the next, unless
@@ -139,10 +159,10 @@ fn menu_ui(ui: &mut Ui, state: &AppState, menu: Menu, commands: &mut Vec<Command
         };
         match group.submenu {
             Some(name) => {
-                ui.menu_button(name, |ui| {
-                    ui.set_min_width(248.0);
-                    items(ui, commands);
+                let opener = ui.menu_button(name, |ui| {
+                    scrolling(ui, 0.0, |ui| items(ui, commands));
                 });
+                keep_in_sight(&opener.response);
             }
             None => items(ui, commands),
         }
@@ -181,6 +201,7 @@ fn item_ui(ui: &mut Ui, state: &AppState, row: &ActionRow, commands: &mut Vec<Co
     }
     let is_enabled = enabled.is_ok();
     let response = ui.add_enabled(is_enabled, button);
+    keep_in_sight(&response);
     if let Some(is_on) = is_on {
         // The tick is no part of the name.
         response.widget_info(|| {
@@ -199,7 +220,8 @@ fn item_ui(ui: &mut Ui, state: &AppState, row: &ActionRow, commands: &mut Vec<Co
 
 /// Every form of matrix, card and mesh.
 fn export_forms_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    ui.menu_button("Copy as", |ui| copy_forms_ui(ui, state, commands));
+    let opener = ui.menu_button("Copy as", |ui| copy_forms_ui(ui, state, commands));
+    keep_in_sight(&opener.response);
     let matrices = MatrixForm::ALL
         .iter()
         .map(|form| (form.label(), Output::Matrix(*form)));
@@ -251,6 +273,7 @@ fn save_menu(
                 }
             }
         });
+        keep_in_sight(&menu.response);
         if let Err(reason) = enabled {
             menu.response.on_disabled_hover_text(reason.0);
         }
@@ -259,7 +282,7 @@ fn save_menu(
 
 fn recent_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     use crate::app::FileCommand;
-    ui.menu_button("Recent files", |ui| {
+    let opener = ui.menu_button("Recent files", |ui| {
         for path in &state.settings.recent {
             let name = state.settings.recent_name(path);
             if is_project(path) {
@@ -292,6 +315,7 @@ fn recent_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             });
         }
     });
+    keep_in_sight(&opener.response);
 }
 
 fn bell_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
