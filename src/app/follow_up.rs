@@ -118,6 +118,7 @@ impl AppState {
                 if !is_in_place {
                     self.with_scene(|view, scene| view.fit_after_load(role, scene));
                 }
+                self.inspect.section = self.section_of_parts();
                 self.leave_empty_views();
                 self.go_on_from_load();
             }

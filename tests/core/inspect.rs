@@ -316,6 +316,31 @@ fn the_section_meets_a_part() {
     assert_eq!(window.state.inspect.section.shown(), Some(plane));
 }
 
+/// A plane of the parts before goes through the ones that are loaded now, across the same direction.
+#[test]
+fn the_section_goes_with_the_parts_that_are_loaded() {
+    let mut window = Window::with_both();
+    window.act(Action::SectionY);
+    let plane = window.state.inspect.section.shown().unwrap();
+    let far = Plane::new(Point3::new(0.0, 9e6, 0.0), &plane.normal);
+    let section = SectionView {
+        plane: Some(far),
+        ..window.state.inspect.section
+    };
+    window.apply(InspectCommand::SetSection(section));
+    assert_eq!(window.state.inspect.section.shown(), Some(far));
+    // A direction that is asked for finds the parts, too.
+    window.act(Action::SectionX);
+    let across = window.state.inspect.section.shown().unwrap();
+    assert_eq!(across.normal, Vector3::x());
+    assert!(across.meets(&window.part(Role::Crash).bounds()));
+    window.apply(InspectCommand::SetSection(section));
+    window.open("panel_crash.k", Role::Crash);
+    let placed = window.state.inspect.section.shown().unwrap();
+    assert_eq!(placed.normal, plane.normal);
+    assert!(placed.meets(&window.part(Role::Crash).bounds()));
+}
+
 #[test]
 fn looking_at_a_place_brings_the_camera_there() {
     let mut window = with_map();

@@ -25,7 +25,7 @@ pub(super) const ROWS: &[ActionRow] = &[
         command: |state| {
             some(InspectCommand::SetSection(SectionView {
                 is_clipped: !state.inspect.section.is_clipped,
-                ..across(state, &section_normal(state))
+                ..state.section_across(&section_normal(state))
             }))
         },
     },
@@ -95,13 +95,8 @@ fn section_normal(state: &AppState) -> Vector3 {
         .normal
 }
 
-fn across(state: &AppState, normal: &Vector3) -> SectionView {
-    let section = state.inspect.section;
-    section.across(normal, || state.default_section_plane())
-}
-
 fn section_across(state: &AppState, normal: &Vector3) -> Option<Command> {
-    some(InspectCommand::SetSection(across(state, normal)))
+    some(InspectCommand::SetSection(state.section_across(normal)))
 }
 
 fn section_moved(state: &AppState, n_steps: f64) -> Option<Command> {

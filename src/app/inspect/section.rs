@@ -34,17 +34,6 @@ impl SectionView {
         }
     }
 
-    /// The section with its plane turned to a direction, through the same point.
-    #[must_use]
-    pub fn across(self, normal: &Vector3, first: impl FnOnce() -> Plane) -> Self {
-        let plane = self.plane.unwrap_or_else(first);
-        Self {
-            is_on: true,
-            plane: Some(Plane::new(plane.point, normal)),
-            ..self
-        }
-    }
-
     /// The section with its plane moved along its normal.
     pub fn moved(self, way: f64) -> Option<Self> {
         let plane = self.shown()?;
@@ -60,17 +49,42 @@ impl AppState {
     /// The section on or off. A plane of other parts, or from before they were moved, that meets neither is put anew.
     pub(in crate::app) fn toggled_section(&self) -> SectionView {
         let section = self.inspect.section;
-        let meets = |plane: &Plane| {
-            let boxes = Role::ALL.map(|role| self.bounds_of(role));
-            boxes
-                .iter()
-                .any(|bounds| !bounds.is_empty() && plane.meets(bounds))
-        };
+        let is_kept = |plane: &Plane| section.is_on || self.meets_a_part(plane);
         SectionView {
-            plane: section.plane.filter(|plane| section.is_on || meets(plane)),
+            plane: section.plane.filter(is_kept),
             ..section
         }
         .toggled(|| self.default_section_plane())
+    }
+
+    /// The section with its plane turned to a direction, through the same point unless it met neither part there.
+    #[must_use]
+    pub fn section_across(&self, normal: &Vector3) -> SectionView {
+        let section = self.inspect.section;
+        let turned = section.plane.map(|plane| Plane::new(plane.point, normal));
+        let plane = turned.filter(|plane| self.meets_a_part(plane));
+        let anew = || Plane::new(self.default_section_plane().point, normal);
+        SectionView {
+            is_on: true,
+            plane: Some(plane.unwrap_or_else(anew)),
+            ..section
+        }
+    }
+
+    /// The section once other parts are there: a plane that is shown and meets neither is put anew, across the same
+    /// direction.
+    pub(in crate::app) fn section_of_parts(&self) -> SectionView {
+        match self.inspect.section.shown() {
+            Some(plane) => self.section_across(&plane.normal),
+            None => self.inspect.section,
+        }
+    }
+
+    fn meets_a_part(&self, plane: &Plane) -> bool {
+        let boxes = Role::ALL.map(|role| self.bounds_of(role));
+        boxes
+            .iter()
+            .any(|bounds| !bounds.is_empty() && plane.meets(bounds))
     }
 
     /// A plane through the middle of what both parts have in common, or of the crash part, or of the only one; across
@@ -98,15 +112,16 @@ impl AppState {
 }
 
 impl Document {
-    /// A tenth of an element, the step of the section plane by keys.
-    pub fn section_step(&self) -> f64 {
+    /// The mean edge length of the part with the finer elements; 1 without one.
+    pub fn finest_element(&self) -> f64 {
         let parts = Role::ALL.into_iter();
         let sizes = parts.filter_map(|role| Some(self.part(role)?.facts.edge_length));
         let finest = sizes.fold(f64::INFINITY, f64::min);
-        if finest.is_finite() {
-            0.1 * finest
-        } else {
-            0.1
-        }
+        if finest.is_finite() { finest } else { 1.0 }
+    }
+
+    /// A tenth of an element, the step of the section plane by keys.
+    pub fn section_step(&self) -> f64 {
+        0.1 * self.finest_element()
     }
 }

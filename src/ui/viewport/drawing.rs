@@ -13,7 +13,7 @@ use egui_plot::{
     LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, PlotTransform, PlotUi, Points,
 };
 
-use self::choices::{Choices, Zoom};
+use self::choices::{Choices, Zoom, zoom_by_wheel};
 use super::coordinates::with_coordinates;
 use super::outlines::{Lie, Outline, around, direction_name};
 use super::sections::{self, Cuts, Gaps};
@@ -30,8 +30,6 @@ use crate::ui::widgets::{file_swatch, nothing_yet, paint_role_mark, segments};
 const SNAP: f64 = 12.0;
 /// The gap is shown this near to the crash outline.
 const NEAR: f64 = 60.0;
-/// Zoom per point of the wheel.
-const ZOOM: f32 = 0.004;
 /// How many times as wide gaps are drawn on request.
 const EXAGGERATED: f64 = 10.0;
 /// Width of the crash outline, which lies below, and of the stamped one.
@@ -301,7 +299,7 @@ impl Drawing<'_> {
             }
             choices.is_zoomed |= !is_new && !plot.auto_bounds().any();
             Self::lines(plot, outlines);
-            zoom_by_wheel(plot);
+            zoom_by_wheel(plot, self.state.document.section_step());
             self.measured(plot, &choices.picked);
             self.look_at(plot, &mut seen);
         });
@@ -404,7 +402,8 @@ impl Drawing<'_> {
                 ([0, 1].map(|i| 0.5 * (a[i] + b[i])), half / aspect.max(1.0))
             }
         };
-        let half = half.max(1e-6 * extent);
+        // What is smaller than an element are facets.
+        let half = half.max(0.5 * self.state.document.finest_element());
         let half = [half * aspect, half];
         let corner = |sign: f64| [0, 1].map(|i| center[i] + sign * half[i]);
         Some(PlotBounds::from_min_max(corner(-1.0), corner(1.0)))
@@ -584,15 +583,6 @@ struct Seen {
     is_exaggerated: bool,
     clicked: Option<[f64; 2]>,
     is_forgotten: bool,
-}
-
-fn zoom_by_wheel(plot: &mut PlotUi<'_>) {
-    if plot.response().hovered() {
-        let scroll = plot.ctx().input(|i| i.smooth_scroll_delta().y);
-        if scroll != 0.0 {
-            plot.zoom_bounds_around_hovered(Vec2::splat((scroll * ZOOM).exp()));
-        }
-    }
 }
 
 fn distance(a: &Point3, b: &Point3) -> f64 {

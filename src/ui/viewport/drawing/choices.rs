@@ -1,8 +1,14 @@
 //! What the user chose for a drawing of the section, and which view of it is kept.
 
+use egui::Vec2;
+use egui_plot::PlotUi;
+
 use crate::geometry::Vector3;
 use crate::role::{PerRole, Role};
 use crate::ui::viewport::outlines::Lie;
+
+/// Zoom per point of the wheel.
+const ZOOM: f32 = 0.004;
 
 /// What the user chose, kept while the program runs; the tab and the window have their own, as they differ in shape.
 #[derive(Debug, Clone, Default)]
@@ -70,6 +76,18 @@ impl Choices {
             self.is_zoomed = true;
         }
         is_new
+    }
+}
+
+/// The wheel zooms, down to a height of `least`.
+pub(super) fn zoom_by_wheel(plot: &mut PlotUi<'_>, least: f64) {
+    if plot.response().hovered() {
+        let scroll = plot.ctx().input(|i| i.smooth_scroll_delta().y);
+        let most = (plot.plot_bounds().height() / least).max(1.0) as f32;
+        let factor = (scroll * ZOOM).exp().min(most);
+        if factor != 1.0 {
+            plot.zoom_bounds_around_hovered(Vec2::splat(factor));
+        }
     }
 }
 
