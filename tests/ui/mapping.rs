@@ -595,6 +595,11 @@ fn checks_of_a_mapping_that_is_out_of_date_say_so_in_the_tab() {
     run(&mut window, MapCommand::SetOptions(Box::new(options)));
     window.run_steps(4);
     assert!(says(&window, "Checks out of date"));
+    // So do the window with its values and their legend.
+    let seen = texts_beside_crash(&window);
+    let has = |text: &str| seen.iter().any(|seen| seen == text);
+    assert!(has("mapped, out of date") && !has("mapped"), "{seen:?}");
+    assert!(has("out of date") || has("out of"), "{seen:?}");
 }
 
 #[test]
@@ -647,15 +652,14 @@ fn draw(window: &mut Harness<'static, Shell>) {
     }
 }
 
-/// The numbers in the left 3D window.
-fn numbers_beside_crash(window: &Harness<'static, Shell>) -> Vec<String> {
+/// The texts in the left 3D window.
+fn texts_beside_crash(window: &Harness<'static, Shell>) -> Vec<String> {
     let is_crash = |label: String| label.starts_with("Crash part, ");
     let area = window.get_by(|node| node.label().is_some_and(is_crash));
     let area = area.rect();
     let seen = texts(window).into_iter();
     let inside = seen.filter(|text| area.contains_rect(text.rect));
-    let numbers = inside.filter(|text| text.text.parse::<f64>().is_ok());
-    numbers.map(|text| text.text).collect()
+    inside.map(|text| text.text).collect()
 }
 
 #[test]
@@ -680,7 +684,9 @@ fn a_window_without_a_part_says_nothing_of_the_colours_in_the_other() {
             run(&mut window, close.clone());
         }
         draw(&mut window);
-        seen.push(numbers_beside_crash(&window));
+        let mut numbers = texts_beside_crash(&window);
+        numbers.retain(|text| text.parse::<f64>().is_ok());
+        seen.push(numbers);
     }
     assert!(!seen[0].is_empty());
     assert_eq!(seen[0], seen[1]);

@@ -159,6 +159,12 @@ impl AppState {
             && (by.map_picture().is_some() || self.mapped_for(by).is_some())
     }
 
+    /// True if a window shows values of a mapping that would be made otherwise now.
+    pub fn is_old_mapping_shown(&self, window: Role) -> bool {
+        let is_mapped = window == Role::Crash && self.is_mapping_shown();
+        is_mapped && self.document.is_mapping_out_of_date()
+    }
+
     /// True if the left window shows the mapped crash part alone, whatever the right one is used for: the stamped
     /// part would hide its colours.
     pub fn is_mapping_apart(&self) -> bool {

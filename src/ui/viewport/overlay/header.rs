@@ -163,6 +163,7 @@ fn is_free(over: &Overlay<'_>) -> bool {
 fn title(painter: &Painter, over: &Overlay<'_>, role: Role, room: f32) -> [Arc<Galley>; 2] {
     let state = over.frame.state;
     let (name, what) = match role {
+        Role::Crash if state.is_old_mapping_shown(role) => ("CRASH", "mapped, out of date"),
         Role::Crash if state.is_mapping_shown() => ("CRASH", "mapped"),
         Role::Crash => ("CRASH", "fixed"),
         Role::Stamped if state.shown_pose().is_mirrored() => ("STAMPED", "moves, mirrored"),

@@ -5,7 +5,7 @@ use egui::{Align, Button, Layout, Rect, RichText, Sense, Stroke, Ui, WidgetInfo,
 
 use super::bar::Grip;
 use super::limits::{self, Limit};
-use super::{Room, WIDTH, bar, menu, overlap};
+use super::{OLD, OUT_OF_DATE, Room, WIDTH, bar, menu, overlap};
 use crate::app::{Coloring, Command, Freshness, InspectCommand};
 use crate::assess::deviation::DeviationStats;
 use crate::colormap::ColorScale;
@@ -42,7 +42,7 @@ pub(super) fn show(
     );
     freshness(ui, over, commands);
     if over.frame.state.freshness() != Freshness::Current {
-        ui.set_opacity(0.45);
+        ui.set_opacity(OLD);
     }
     let mut display = over.frame.state.view.display.clone();
     let coloring = &mut display.coloring;
@@ -186,7 +186,7 @@ pub(super) fn freshness(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Comm
         }
         Freshness::Missing => "not measured yet",
         Freshness::Updating => "out of date · measuring",
-        Freshness::OutOfDate => "out of date",
+        Freshness::OutOfDate => OUT_OF_DATE,
     };
     let color = match over.frame.state.freshness() {
         Freshness::Current => over.frame.look.weak,

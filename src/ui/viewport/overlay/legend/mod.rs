@@ -19,6 +19,7 @@ use crate::colormap::ColorScale;
 use crate::pipeline::forming_values::LayerChoice;
 use crate::text::{inside, tick_number};
 use crate::ui::pictures::clickable;
+use crate::ui::theme::Palette;
 use crate::ui::viewport::fields::FieldKind;
 
 /// Width of what is inside the plate, and of the folded one; air beside it.
@@ -106,6 +107,9 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
 /// Draws what the classes of a picture are.
 type Classes = fn(&mut Ui, &Overlay<'_>, &mut Vec<Command>);
 
+/// What is said of values that would be others now, and how strong they are drawn.
+pub(super) const OUT_OF_DATE: &str = "out of date";
+const OLD: f32 = 0.45;
 /// Height of the note below a folded legend.
 const NOTE: f32 = 16.0;
 /// Height of the button that opens a legend for which its window has no room.
@@ -142,7 +146,7 @@ fn behind_button(ui: &mut Ui, over: &Overlay<'_>, width: f32, add: impl FnOnce(&
             ui.set_width(width);
             egui::ScrollArea::vertical()
                 .max_height(ui.ctx().content_rect().height() - 2.0 * BUTTON)
-                .show(ui, add);
+                .show(ui, |ui| of_mapping(ui, over, add));
         });
         let name = format!("Legend ({})", over.role().word());
         response
@@ -355,7 +359,7 @@ fn plate(ui: &mut Ui, over: &Overlay<'_>, width: f32, add: impl FnOnce(&mut Ui))
             .inner_margin(Margin::same(AIR as i8))
             .show(ui, |ui| {
                 ui.set_width(width);
-                add(ui);
+                of_mapping(ui, over, add);
             });
     });
     let used = shown.response.rect;
@@ -366,6 +370,19 @@ fn plate(ui: &mut Ui, over: &Overlay<'_>, width: f32, add: impl FnOnce(&mut Ui))
     ui.painter().set(ground, Shape::Rect(shape));
     ui.data_mut(|data| data.insert_temp(id, used));
     used
+}
+
+/// The legend of mapped values that are out of date is pale and says so at its foot, so that its bar stays where it is.
+fn of_mapping(ui: &mut Ui, over: &Overlay<'_>, add: impl FnOnce(&mut Ui)) {
+    if !over.frame.state.is_old_mapping_shown(over.role()) {
+        return add(ui);
+    }
+    let opacity = ui.opacity();
+    ui.set_opacity(OLD * opacity);
+    add(ui);
+    ui.set_opacity(opacity);
+    let text = RichText::new(OUT_OF_DATE).size(11.0);
+    ui.add(egui::Label::new(text.color(Palette::of(ui).check)).wrap());
 }
 
 /// How far the user dragged the legend from its place; a double click puts it back.
