@@ -1,7 +1,9 @@
 //! What the window says after a move and after a weak or failed match, and that each remedy does something.
 
 use shapematch::app::*;
-use shapematch::assess::{Assessment, Clarity, Reason, ShapeReason, Twin, TwinAxis, Verdict};
+use shapematch::assess::{
+    Assessment, Clarity, Reason, ShapeKind, ShapeReason, Twin, TwinAxis, Verdict,
+};
 use shapematch::geometry::{Point3, Rotation, Similarity, TriMesh, Vector3};
 use shapematch::jobs::{JobEvent, JobKey, JobStage};
 use shapematch::registration::{Hand, Method, Surface};
@@ -469,4 +471,29 @@ fn a_unit_that_was_changed_after_the_match_is_named() {
     }));
     let stale = window.state.stale(Section::Match).unwrap();
     assert_eq!(stale.reason, "a part was changed after the match");
+}
+
+#[test]
+fn several_parts_and_a_different_one_come_before_other_poses() {
+    let mut window = Window::with_both_and_no_rivals();
+    window.act(Action::MatchOrStop);
+    let titles = |window: &Window| -> Vec<String> {
+        let causes = window.state.causes();
+        causes.into_iter().map(|cause| cause.title).collect()
+    };
+    reassess(&mut window, |assessment| {
+        assessment.verdict = Verdict::Poor;
+        assessment.ambiguity.clarity = Clarity::Ambiguous;
+    });
+    assert!(titles(&window).contains(&"Ambiguous pose".to_owned()));
+    reassess(&mut window, |assessment| {
+        assessment.shape.as_mut().unwrap().kind = ShapeKind::Different;
+    });
+    let found = titles(&window);
+    assert_eq!(found[0], "A different part");
+    assert!(!found.contains(&"Ambiguous pose".to_owned()), "{found:?}");
+    reassess(&mut window, |assessment| {
+        assessment.coverage.target_on_source.overlap = 0.2;
+    });
+    assert_eq!(titles(&window)[0], "2 crash parts are matched as one");
 }

@@ -6,7 +6,8 @@ use crate::app::{
     Action, AppState, BottomTab, Command, MatchCommand, MatchResult, PartCommand, ViewCommand,
 };
 use crate::assess::{
-    Assessment, Clarity, Reason, ShapeReason, Twin, Verdict, as_well, fit_beside, fit_of_hand,
+    Assessment, Clarity, Reason, ShapeKind, ShapeReason, Twin, Verdict, as_well, fit_beside,
+    fit_of_hand,
 };
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::registration::{Hand, Method, StartMethod};
@@ -42,9 +43,12 @@ impl AppState {
         if let Some(only) = self.only_cause(assessment) {
             return vec![only];
         }
+        let is_different = is_different_part(assessment);
         let found = [
+            self.parts_together_cause(assessment),
             self.hand_cause(assessment),
-            self.twin_cause(result),
+            is_different.then(different_cause),
+            self.twin_cause(result).filter(|_| !is_different),
             self.freedom_cause(assessment),
             self.overlap_cause(assessment),
             self.shape_cause(assessment),
@@ -191,6 +195,20 @@ impl AppState {
         })
     }
 
+    /// Crash parts that were chosen together, of which the stamped one covers little.
+    fn parts_together_cause(&self, assessment: &Assessment) -> Option<Cause> {
+        let n_used = self.document.part(Role::Crash)?.facts.used.len();
+        let covered = assessment.coverage.target_on_source.overlap;
+        (n_used > 1 && covered < LITTLE_OVERLAP).then(|| Cause {
+            title: matched_as_one(n_used),
+            evidence: format!(
+                "The stamped part covers {} of them: choose in section 1 the part that it belongs to.",
+                whole_percent(covered)
+            ),
+            remedy: None,
+        })
+    }
+
     fn units_cause(&self, assessment: &Assessment) -> Option<Cause> {
         let check = &assessment.scale_check;
         let evidence = match (&check.unit, self.unit_hint()) {
@@ -302,8 +320,8 @@ impl AppState {
     }
 
     fn shape_cause(&self, assessment: &Assessment) -> Option<Cause> {
-        if assessment.coverage.better_overlap() < LITTLE_OVERLAP {
-            // What lies elsewhere is not bent.
+        if assessment.coverage.better_overlap() < LITTLE_OVERLAP || is_different_part(assessment) {
+            // What lies elsewhere is not bent, nor is another part.
             return None;
         }
         let differ = assessment.reasons.iter().find_map(|reason| match reason {
@@ -347,6 +365,22 @@ impl AppState {
             is_matched: false,
         };
         (label, vec![set.into()])
+    }
+}
+
+fn is_different_part(assessment: &Assessment) -> bool {
+    let shape = assessment.shape.as_ref();
+    shape.is_some_and(|shape| shape.kind == ShapeKind::Different)
+}
+
+/// Of two different parts no other pose, and no other tolerance, is worth a look.
+fn different_cause() -> Cause {
+    Cause {
+        title: "A different part".to_owned(),
+        evidence: "The shapes differ by more than springback or another version of the part: check that both files \
+                   hold the same part."
+            .to_owned(),
+        remedy: None,
     }
 }
 
