@@ -24,7 +24,9 @@ const WITH_DIALOG: [Action; 9] = [
 ];
 
 /// Actions that begin the work itself or look for what is not there: where they are not possible, their keys say why.
-const SAY_WHY: [Action; 7] = [
+const SAY_WHY: [Action; 10] = [
+    Action::OpenCrash,
+    Action::OpenStamped,
     Action::MatchOrStop,
     Action::Refine,
     Action::MapOrCancel,
@@ -32,6 +34,7 @@ const SAY_WHY: [Action; 7] = [
     Action::Blink,
     Action::ToggleWipe,
     Action::ToggleGizmo,
+    Action::CopyMatrix,
 ];
 
 /// What the keys of a frame belong to: the topmost thing that is open.

@@ -431,7 +431,7 @@ fn a_tolerance_that_was_allowed_holds_for_these_parts() {
     let tolerance = |window: &Window| window.state.document.recipe.settings.shape_tolerance;
     take_remedy(&mut window, "Allow");
     assert_eq!(tolerance(&window), 4.7);
-    assert_eq!(window.state.history.undo_name(), Some("Allow 4.70 mm"));
+    assert_eq!(window.state.history.undo_name(), Some("Allow 4.70"));
     window.open("panel_stamped.k", Role::Stamped);
     assert_eq!(tolerance(&window), 0.0);
     window.act(Action::Undo);

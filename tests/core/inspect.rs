@@ -322,7 +322,7 @@ fn the_section_goes_with_the_parts_that_are_loaded() {
     let mut window = Window::with_both();
     window.act(Action::SectionY);
     let plane = window.state.inspect.section.shown().unwrap();
-    let far = Plane::new(Point3::new(0.0, 9e6, 0.0), &plane.normal);
+    let far = Plane::new(Point3::new(9e6, 9e6, 9e6), &plane.normal);
     let section = SectionView {
         plane: Some(far),
         ..window.state.inspect.section

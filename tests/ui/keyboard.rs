@@ -3,14 +3,16 @@
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use shapematch::app::{Axis, Dialog, MoveCommand, PartCommand, PartRef, Section, ViewCommand};
+use shapematch::app::{
+    Axis, Dialog, MatchCommand, MoveCommand, PartCommand, PartRef, Section, ViewCommand,
+};
 use shapematch::registration::Method;
 use shapematch::role::Role;
 use shapematch::settings::Choice as _;
 use shapematch::ui::Shell;
 use shapematch::ui::theme::Palette;
 
-use super::mapping::is_ringed;
+use super::mapping::{any_shape, is_ringed};
 use super::pairs::click_in;
 use super::story::{click, finish, window};
 
@@ -626,5 +628,49 @@ fn the_keys_behind_g_move_the_part_whatever_the_frame_takes_together() {
         );
         let moved = state.document.crash_from_stamped().translation;
         assert!((moved.x - x).abs() < 1e-9, "{moved}");
+    }
+}
+
+#[test]
+fn sliders_and_folds_that_the_keyboard_comes_to_are_ringed() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    let ring = Palette::of_visuals(&window.ctx.global_style().visuals).accent_text;
+    tab_to(&mut window, "Move by hand");
+    let rect = window.get_by_label("Move by hand").rect();
+    assert!(is_ringed(&window, rect, ring));
+    click(&mut window, "Move over");
+    finish(&mut window);
+    let separation = "Draws the stamped part apart from where it is; the matrix stays";
+    for name in ["■ opacity", "▲ opacity", separation] {
+        tab_to(&mut window, name);
+        let kind = egui::accesskit::Role::Slider;
+        let slider = window.get_by_role_and_label(kind, name).rect().center();
+        let is_ring = |shape: &egui::Shape| match shape {
+            egui::Shape::Rect(drawn) => drawn.rect.contains(slider) && drawn.stroke.color == ring,
+            _ => false,
+        };
+        let shapes = &window.output().shapes;
+        let is_ringed = shapes.iter().any(|one| any_shape(&one.shape, &is_ring));
+        assert!(is_ringed, "{name}");
+    }
+}
+
+#[test]
+fn a_file_that_is_not_opened_during_a_match_says_why() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    let ctx = window.ctx.clone();
+    for modifiers in [Modifiers::COMMAND, Modifiers::COMMAND | Modifiers::SHIFT] {
+        window
+            .state_mut()
+            .run_commands(vec![MatchCommand::Run.into()], &ctx);
+        window.key_press_modifiers(modifiers, Key::O);
+        window.run_steps(1);
+        let mut told = window.state().state().log.notices.toasts();
+        assert!(told.any(|notice| notice.text == "A match is running."));
+        finish(&mut window);
     }
 }

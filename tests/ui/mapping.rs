@@ -511,7 +511,7 @@ fn files_are_told_apart_in_both_windows_and_can_be_hidden() {
 }
 
 /// True of a shape, or of one within it.
-fn any_shape(shape: &egui::Shape, is_it: &dyn Fn(&egui::Shape) -> bool) -> bool {
+pub(super) fn any_shape(shape: &egui::Shape, is_it: &dyn Fn(&egui::Shape) -> bool) -> bool {
     match shape {
         egui::Shape::Vec(shapes) => shapes.iter().any(|shape| any_shape(shape, is_it)),
         shape => is_it(shape),

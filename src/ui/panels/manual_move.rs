@@ -14,7 +14,7 @@ use crate::text::{fixed, trimmed};
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::typed::{Takes, told_field};
 use crate::ui::widgets::{
-    Look, action_button, caption, chip, form_row, plain_action, set_draft, text_field,
+    Look, action_button, caption, chip, focus_ring, form_row, plain_action, set_draft, text_field,
 };
 
 /// Width of the label column.
@@ -44,6 +44,7 @@ pub fn manual_move_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>
                 paste_ui(ui, commands);
             });
         });
+    focus_ring(ui, shown.header_response.rect, &shown.header_response);
     if is_asked {
         shown.header_response.scroll_to_me(Some(egui::Align::TOP));
     }

@@ -16,7 +16,8 @@ use crate::text::{counted, whole_percent};
 use crate::ui::focus;
 use crate::ui::theme::{Palette, ROW, TALL, UNIT};
 use crate::ui::widgets::{
-    Look, action_button, caption, form_row, paragraph, secondary, segments, tight, wide_action,
+    Look, action_button, caption, focus_ring, form_row, paragraph, secondary, segments, tight,
+    wide_action,
 };
 
 /// Width of the label column of this section.
@@ -281,7 +282,8 @@ fn over_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         form_row(ui, name, 72.0, |ui| {
             slider_room(ui);
             let value = display.opacity.get_mut(role);
-            ui.add(egui::Slider::new(value, 0.0..=1.0).fixed_decimals(2));
+            let slider = ui.add(egui::Slider::new(value, 0.0..=1.0).fixed_decimals(2));
+            focus_ring(ui, slider.rect, &slider);
         });
     }
     form_row(ui, "separation", 72.0, |ui| {
@@ -292,12 +294,13 @@ fn over_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         slider_room(ui);
         let slider = egui::Slider::new(&mut display.separation, 0.0..=0.25 * size);
         let decimals = (4.0 - size.log10().floor()).clamp(1.0, 9.0) as usize;
-        ui.add(
+        let slider = ui.add(
             slider
                 .max_decimals(decimals)
                 .suffix(state.document.unit_suffix()),
-        )
-        .on_hover_text("Draws the stamped part apart from where it is; the matrix stays");
+        );
+        focus_ring(ui, slider.rect, &slider);
+        slider.on_hover_text("Draws the stamped part apart from where it is; the matrix stays");
     });
     ui.horizontal(|ui| {
         for action in [Action::ToggleSeeThrough, Action::ToggleWipe] {

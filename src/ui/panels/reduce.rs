@@ -15,8 +15,8 @@ use crate::text::counted;
 use crate::ui::theme::{LABEL, Palette, ROW, UNIT};
 use crate::ui::typed::{Takes, is_refused, told_field};
 use crate::ui::widgets::{
-    Look, action_button, caption, chip, form_row, grouped, icon_button, paragraph, role_mark,
-    short_count, square, tight,
+    Look, action_button, caption, chip, focus_ring, form_row, grouped, icon_button, paragraph,
+    role_mark, short_count, square, tight,
 };
 
 /// Draws section 2.
@@ -181,6 +181,7 @@ fn strip_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             .logarithmic(true)
             .show_value(false);
         let slider = ui.add(slider).accessible_name("Level of reduction");
+        focus_ring(ui, slider.rect, &slider);
         if slider.changed() && Some(n) != wanted {
             commands.push(if n >= n_full {
                 ReduceCommand::Full(roles).into()

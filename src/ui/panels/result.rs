@@ -20,7 +20,7 @@ use crate::ui::panels::top_bar::copy_forms_ui;
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::typed::{Takes, told_field};
 use crate::ui::widgets::{
-    Look, action_tooltip, caption, card, chip, figure, figure_fits, paragraph, percent,
+    Look, action_tooltip, caption, card, chip, figure, figure_fits, focus_ring, paragraph, percent,
     plain_action, square, tight, told_button, verdict_color,
 };
 
@@ -433,13 +433,14 @@ fn matrix_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         button
             .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Copy matrix as"));
     });
-    egui::CollapsingHeader::new("Matrix, stamped → crash")
+    let shown = egui::CollapsingHeader::new("Matrix, stamped → crash")
         .id_salt("matrix")
         .show_unindented(ui, |ui| {
             caption(ui, DIRECTION);
             grid_ui(ui, &pose.to_rows());
             moved_ui(ui, state);
         });
+    focus_ring(ui, shown.header_response.rect, &shown.header_response);
 }
 
 /// Air between columns of digits.

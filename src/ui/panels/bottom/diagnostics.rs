@@ -5,7 +5,7 @@ use egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 use crate::app::{AppState, Command, ExportCommand};
 use crate::formats::{Diagnostic, Diagnostics, Severity};
 use crate::ui::theme::Palette;
-use crate::ui::widgets::{caption, grouped, nothing_yet, role_mark};
+use crate::ui::widgets::{caption, focus_ring, grouped, nothing_yet, role_mark};
 
 /// Diagnostics of a kind that are shown without being asked for.
 const FEW: u64 = 3;
@@ -56,7 +56,7 @@ fn kinds_ui(ui: &mut Ui, diagnostics: &Diagnostics) {
         let (sign, color) = look(ui, kind.severity());
         let count = grouped(usize::try_from(n).unwrap_or(usize::MAX));
         let title = RichText::new(format!("{sign} {count} × {}", kind.label())).color(color);
-        CollapsingHeader::new(title)
+        let shown = CollapsingHeader::new(title)
             .id_salt(kind.label())
             .default_open(n <= FEW)
             .show(ui, |ui| {
@@ -70,6 +70,7 @@ fn kinds_ui(ui: &mut Ui, diagnostics: &Diagnostics) {
                     caption(ui, format!("and {} more of this kind", grouped(more)));
                 }
             });
+        focus_ring(ui, shown.header_response.rect, &shown.header_response);
     }
 }
 
