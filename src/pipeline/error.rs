@@ -179,8 +179,8 @@ pub enum PipelineError {
     Cancelled(#[from] Cancelled),
 }
 
-/// ". The reader found: deck.k:5:7: error: …", if it found anything; by its line alone where it stands in the file that
-/// is named already.
+/// ". The reader found: deck.k:5:7: error: …", if it found anything; ". Line 5: error: …" where it stands in the file
+/// that is named already.
 fn because(path: &Path, diagnostic: &Option<Box<Diagnostic>>) -> String {
     let Some(diagnostic) = diagnostic.as_deref() else {
         return String::new();
@@ -191,11 +191,10 @@ fn because(path: &Path, diagnostic: &Option<Box<Diagnostic>>) -> String {
                 position: None,
                 ..diagnostic.clone()
             };
-            let line = match position.line {
-                0 => String::new(),
-                line => format!(" in line {line}"),
-            };
-            format!(". The reader found{line}: {found}")
+            match position.line {
+                0 => format!(". The reader found: {found}"),
+                line => format!(". Line {line}: {found}"),
+            }
         }
         _ => format!(". The reader found: {diagnostic}"),
     }

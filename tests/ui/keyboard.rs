@@ -669,8 +669,11 @@ fn a_file_that_is_not_opened_during_a_match_says_why() {
             .run_commands(vec![MatchCommand::Run.into()], &ctx);
         window.key_press_modifiers(modifiers, Key::O);
         window.run_steps(1);
-        let mut told = window.state().state().log.notices.toasts();
-        assert!(told.any(|notice| notice.text == "A match is running."));
+        let is_told = {
+            let mut told = window.state().state().log.notices.toasts();
+            told.any(|notice| notice.text == "A match is running.")
+        };
+        assert!(is_told);
         finish(&mut window);
     }
 }

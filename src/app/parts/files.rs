@@ -252,12 +252,7 @@ impl PartsState {
         if has_swapped {
             self.selected.clear();
             work.follow(FollowUp::PartsSwapped);
-            work.log_step(
-                LogStep::Load,
-                None,
-                "crash and stamped part exchanged",
-                None,
-            );
+            work.log_step(LogStep::Load, None, "crash and stamped part swapped", None);
             remember_roles(work);
             further_dropped(work, n_dropped);
         }

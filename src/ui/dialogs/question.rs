@@ -90,8 +90,12 @@ impl Question {
 }
 
 /// The title of a question and the word on its button.
-pub(super) fn titles(question: &Question) -> (&'static str, &'static str) {
-    match question {
+pub(super) fn titles(question: &Question) -> (String, &'static str) {
+    let (title, verb) = match question {
+        Question::Save { kind, .. } => {
+            let what = kind.label().trim_end_matches('…');
+            return (format!("Save: {what}"), "Save");
+        }
         Question::OpenProject => ("Open a project", "Open"),
         Question::Locate(file) => match file {
             ProjectFile::Part(Role::Crash) => ("Locate the crash model of the project", "Use"),
@@ -103,7 +107,7 @@ pub(super) fn titles(question: &Question) -> (&'static str, &'static str) {
         Question::Open(Role::Crash) => ("Open the crash model", "Open"),
         Question::Open(Role::Stamped) => ("Open the stamped part", "Open"),
         Question::OtherMapping => ("Compare the mapping with another result", "Compare"),
-        Question::Save { .. } => ("Save to a file", "Save"),
         Question::Picture { .. } => ("Save an image", "Save"),
-    }
+    };
+    (title.to_owned(), verb)
 }

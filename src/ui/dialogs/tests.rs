@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::pipeline::map::WriteKind;
+use crate::pipeline::outputs::MeshOutput;
 use crate::pipeline::project::EXTENSION;
 use crate::ui::keyboard::{KeyOwner, Keyboard};
 
@@ -251,4 +252,16 @@ fn typing_goes_on_after_a_completed_path() {
     let door = egui::Event::Text("door.shapematch".to_owned());
     let text = frame(&mut dialogs, vec![door]);
     assert_eq!(text, format!("{whole}door.shapematch"));
+}
+
+#[test]
+fn the_title_says_what_is_saved() {
+    let question = |kind| Question::Save {
+        kind,
+        path: "door".into(),
+        inputs: Vec::new(),
+    };
+    assert_eq!(titles(&question(Output::Report)).0, "Save: Report as HTML");
+    let moved = Output::Mesh(MeshOutput::Moved);
+    assert_eq!(titles(&question(moved)).0, "Save: Stamped part, moved");
 }

@@ -102,6 +102,10 @@ fn says(state: &AppState, free: FreeWindow) -> &'static str {
             "stamped files at their poses · same camera"
         }
         FreeWindow::Stamped => "stamped part at its pose · same camera",
+        // Two sheets that lie in each other show the colours of one.
+        FreeWindow::FullMesh if state.is_mapping_shown() => {
+            "both parts without reduction, the stamped one in front · same camera"
+        }
         FreeWindow::FullMesh => "both parts without reduction · same camera",
         FreeWindow::Alternative => {
             let result = state.document.current_result();
