@@ -1,16 +1,20 @@
 //! Poses on copies of the component that a part lies on. A crash model has brackets several times, parts that are
-//! matched as one may hold two of them, and a die may form two parts at once.
+//! matched as one may hold two of them, and a die may form two parts at once. A part turned by half a turn about one of
+//! its principal axes may be a copy of itself.
 
 use rayon::prelude::*;
 
-use super::candidate::{Candidate, FewPlaces, Judged, judged};
+use super::candidate::{Candidate, FewPlaces, Judged, LITTLE_LESS, judged};
 use super::chosen_pose::{ChosenPose, as_likely, beaten};
 use super::context::PairContext;
 use super::refine_with_borders::Refinement;
-use crate::assess::contact::MAX_NODES;
+use crate::assess::contact::{MAX_NODES, Meeting};
+use crate::assess::tolerance::{UNREMARKABLE, is_source_smaller};
 use crate::geometry::{Matrix3, Point3, Similarity, TriMesh, Vector3};
 use crate::monitor::{Cancelled, Monitor};
-use crate::registration::{Alternative, MatchOutcome, Surface, axes_on_axes, principal_frame};
+use crate::registration::{
+    Alternative, MatchOutcome, Surface, axes_on_axes, principal_frame, same_pose,
+};
 use crate::search::ClosestPoint as _;
 
 /// Vertices of a part that tell which component of the other it lies on.
@@ -27,8 +31,9 @@ const MOST: usize = 4;
 const NEARLY_AS_MUCH: f64 = 0.8;
 
 /// The pose of `outcome` with those beside it under which the source lies on copies of the component that it lies on,
-/// or a copy of the source's component does; one of them takes its place where the shapes surely differ less there.
-/// `None` where there are no copies, where it fits none of them, and where rivals were not to be looked for.
+/// or a copy of the source's component does, and its half turns that fit; one of them takes its place where the shapes
+/// surely differ less there. `None` where there are no copies, where it fits none of them, and where rivals were not to
+/// be looked for.
 /// O(triangles + copies · (border edges + nodes · log triangles)).
 pub fn placed_on_copies(
     context: &PairContext<'_>,
@@ -39,12 +44,14 @@ pub fn placed_on_copies(
         return Ok(None);
     }
     let found = &outcome.target_from_source;
-    let first = poses_on_copies(context, found)?;
+    let mut first = poses_on_copies(context, found)?;
+    let few = FewPlaces::new(context, found.scale);
+    let own = few.meeting(found);
+    let least = NEARLY_AS_MUCH * own.share;
+    first.extend(half_turns(context, found, (&few, own)));
     if first.is_empty() {
         return Ok(None);
     }
-    let few = FewPlaces::new(context, found.scale);
-    let least = NEARLY_AS_MUCH * few.meeting(found).share;
     let refinement = Refinement::new(context, found.scale, MAX_NODES);
     let settle = |pose: &Similarity| {
         context.check()?;
@@ -82,6 +89,38 @@ pub fn placed_on_copies(
         others.into_iter(),
         context.source,
     )))
+}
+
+/// The half turns of the smaller part about its principal axes, under which as much of it lies about as close to the
+/// other part.
+fn half_turns(
+    context: &PairContext<'_>,
+    pose: &Similarity,
+    (few, own): (&FewPlaces<'_>, Meeting),
+) -> Vec<Similarity> {
+    let [source, target] = context.surfaces();
+    let is_of_source = is_source_smaller(source, target, pose.scale);
+    let measures = if is_of_source { source } else { target }.measures();
+    let frame = (measures.centroid, measures.principal_axes);
+    let distances = context.distances(pose.scale);
+    let most = distances
+        .as_close_as(UNREMARKABLE, own.gap)
+        .max(distances.tolerance.springback);
+    let turned = axes_on_axes(frame, frame).into_iter().map(|turn| {
+        if is_of_source {
+            pose.after(&turn)
+        } else {
+            turn.after(pose)
+        }
+    });
+    let fits = |turned: &Similarity| {
+        let meeting = few.meeting(turned);
+        meeting.share >= own.share - LITTLE_LESS && meeting.gap <= most
+    };
+    let part = source.measures().into();
+    turned
+        .filter(|turned| !same_pose(turned, pose, &part) && fits(turned))
+        .collect()
 }
 
 /// The pose moved to each copy of the component that the source lies on, and of the one of the source that the target

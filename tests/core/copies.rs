@@ -1,7 +1,7 @@
 //! Parts that an assembly or a stamping holds twice: which of the two is meant nothing tells.
 
 use shapematch::assess::AssessSettings;
-use shapematch::geometry::{Similarity, TriMesh, Vector3};
+use shapematch::geometry::{Point3, Pose, Similarity, TriMesh, Vector3};
 use shapematch::monitor::Monitor;
 use shapematch::registration::{MatchInput, MatchSettings, Surface, match_surfaces};
 use shapematch::settling::settle;
@@ -75,6 +75,37 @@ fn of_two_parts_that_are_formed_at_once_either_may_be_meant() {
     let target = panel(5.0, 0.35, everywhere).transformed(&pose);
     let truth = [pose, pose.after(&beside.inverse())];
     expect_both(&truth, &likely_poses(&source, &target), &source);
+}
+
+/// A curved half of a tube, the same after half a turn about the middle of its length.
+fn half_tube(size: f64) -> TriMesh {
+    let n = [(240.0 / size) as u32, (900.0 / size) as u32];
+    let place = |i: u32, j: u32| {
+        let u = f64::from(i) / f64::from(n[0]) - 0.5;
+        let v = f64::from(j) / f64::from(n[1]) - 0.5;
+        let bow = 30.0 * (1.0 - 4.0 * v * v);
+        let across = 160.0 * u;
+        let height = 40.0 * (std::f64::consts::PI * u).cos();
+        Point3::new(across, 900.0 * v, height + bow)
+    };
+    let columns = n[0] + 1;
+    let points = (0..=n[1]).flat_map(|j| (0..columns).map(move |i| place(i, j)));
+    let cells = (0..n[0]).flat_map(|i| (0..n[1]).map(move |j| j * columns + i));
+    let up = columns;
+    let triangles = cells.flat_map(|a| [[a, a + 1, a + up + 1], [a, a + up + 1, a + up]]);
+    TriMesh::new(points.collect(), triangles.collect()).unwrap()
+}
+
+#[test]
+fn a_part_that_is_its_own_half_turn_has_two_poses() {
+    let (source, crash) = (half_tube(6.0), half_tube(7.0));
+    for seed in 0..3 {
+        let truth = placement(seed);
+        let turn = Similarity::from(Pose::rotation(Vector3::z() * std::f64::consts::PI));
+        let both = [truth, truth.after(&turn)];
+        let found = likely_poses(&source, &crash.transformed(&truth));
+        expect_both(&both, &found, &source);
+    }
 }
 
 #[test]
