@@ -1,6 +1,6 @@
 //! The closed borders of one part as curves, with places along them, and the size of its holes.
 
-use crate::geometry::{Border, Circle, Point3, Similarity, Vector3};
+use crate::geometry::{Border, Circle, Matrix3, Point3, Similarity, Vector3};
 use crate::registration::Surface;
 
 /// Edges to each side that give a ragged border its direction, as far as they are an eighth of it.
@@ -81,6 +81,22 @@ impl BorderCurve {
             length += edge;
         }
         if length > 0.0 { sum / length } else { 0.0 }
+    }
+
+    /// Mean of r rᵀ, r from its middle to a place of it: how far it reaches in which direction.
+    pub(super) fn moment(&self) -> Matrix3 {
+        let n = self.points.len();
+        let (mut sum, mut length) = (Matrix3::zeros(), 0.0);
+        for (i, a) in self.points.iter().enumerate() {
+            let (arm, way) = (a - self.center, self.points[(i + 1) % n] - a);
+            let mixed = arm * way.transpose();
+            let along = arm * arm.transpose()
+                + (mixed + mixed.transpose()) / 2.0
+                + way * way.transpose() / 3.0;
+            sum += along * way.norm();
+            length += way.norm();
+        }
+        if length > 0.0 { sum / length } else { sum }
     }
 
     /// Normal of the sheet around it, not of unit length.

@@ -2,12 +2,16 @@
 
 use super::PARALLEL;
 use crate::assess::border_curve::BorderCurve;
-use crate::geometry::{Aabb, Circle, Point3, Similarity, Vector3};
+use crate::geometry::{Aabb, Circle, Matrix3, Point3, Similarity, Vector3};
 use crate::registration::Surface;
 use crate::search::ClosestPoint;
 
 /// Holes whose radii differ by more than this factor are not the same hole.
 const SAME_RADIUS: f64 = 1.6;
+/// A hole of another form, or one that is turned, reaches differently far in some direction by more than this share of
+/// its radius: a slot of 62 by 28 mm that is turned by 90° by 0.7 of it. What elements cut from the ends of slots is
+/// less.
+const ANOTHER_FORM: f64 = 0.4;
 /// Of holes that overlap and are not the same, one is a pilot hole or an opening cut later if its radius is so many
 /// times smaller.
 const ANOTHER_KIND: f64 = 4.0;
@@ -29,6 +33,8 @@ pub(crate) struct Hole {
     pub(super) circle: Option<Circle>,
     /// Of its border.
     pub(super) length: f64,
+    /// Mean of r rᵀ over its border, r from its middle.
+    pub(super) moment: Matrix3,
     /// Of the sheet around it.
     pub(crate) normal: Vector3,
 }
@@ -40,7 +46,7 @@ pub(crate) struct HolePair {
     pub(crate) hole: Hole,
     /// From its middle to that of the source's.
     pub(crate) off: Vector3,
-    /// Difference of the radii.
+    /// Difference of the radii, or of how far they reach in some direction where the forms differ beyond doubt.
     pub(in crate::assess) wider: f64,
     /// How far the nodes of both lie off their circles; `None` unless both are round and have enough of them.
     pub(in crate::assess) out_of_round: Option<f64>,
@@ -56,6 +62,17 @@ impl Hole {
         }
     }
 
+    /// How much farther one of two holes reaches in some direction than the other, where their forms differ beyond
+    /// doubt; 0 of two round ones.
+    fn differs_in_form_by(&self, other: &Self) -> f64 {
+        if self.circle.is_some() && other.circle.is_some() {
+            return 0.0;
+        }
+        let radius = self.radius.min(other.radius);
+        let by = (self.moment - other.moment).norm() / radius;
+        if by > ANOTHER_FORM * radius { by } else { 0.0 }
+    }
+
     /// What of a shift lies within the sheet: across it the middle of a hole moves with the surface, which is compared
     /// by itself.
     pub(in crate::assess) fn within_sheet(&self, shift: &Vector3) -> Vector3 {
@@ -69,7 +86,8 @@ impl HolePair {
         Self {
             hole: *of_target,
             off: of_source.center - of_target.center,
-            wider: of_source.wider_than(of_target).abs(),
+            wider: (of_source.wider_than(of_target).abs())
+                .max(of_source.differs_in_form_by(of_target)),
             out_of_round: deviation(of_source)
                 .zip(deviation(of_target))
                 .map(|(a, b)| a + b),
@@ -185,6 +203,10 @@ pub(super) fn hole(border: &BorderCurve, target_from_border: &Similarity) -> Hol
             .circle
             .map(|circle| circle.scaled(target_from_border.scale)),
         length: border.length * target_from_border.scale,
+        moment: target_from_border.rotation
+            * border.moment()
+            * target_from_border.rotation.transpose()
+            * target_from_border.scale.powi(2),
         normal: target_from_border.rotate(&normal),
     }
 }

@@ -1,7 +1,7 @@
 //! Borders of parts whose difference is known.
 
 use super::*;
-use crate::geometry::TriMesh;
+use crate::geometry::{Matrix3, TriMesh};
 
 /// A sheet of `n` by 20 cells of one millimetre without the cells in rows and columns 4 to 7.
 fn sheet(n: usize, hole_at: usize) -> Surface {
@@ -10,6 +10,11 @@ fn sheet(n: usize, hole_at: usize) -> Surface {
 
 /// The same, every node up to `noise` above or below.
 fn noisy_sheet(n: usize, hole_at: usize, noise: f64) -> Surface {
+    holed_sheet(n, [hole_at..hole_at + 4, 4..8], noise)
+}
+
+/// A sheet without the cells in these columns and rows.
+fn holed_sheet(n: usize, [columns, rows]: [std::ops::Range<usize>; 2], noise: f64) -> Surface {
     let points = (0..=20 * (n + 1) + n).map(|i| {
         let (x, y) = (i % (n + 1), i / (n + 1));
         // Digits of a sine that have nothing to do with each other.
@@ -17,8 +22,7 @@ fn noisy_sheet(n: usize, hole_at: usize, noise: f64) -> Surface {
         Point3::new(x as f64, y as f64, noise * height)
     });
     let cells = (0..n * 20).map(|i| (i % n, i / n));
-    let is_hole =
-        |(x, y): &(usize, usize)| (hole_at..hole_at + 4).contains(x) && (4..8).contains(y);
+    let is_hole = |(x, y): &(usize, usize)| columns.contains(x) && rows.contains(y);
     let triangles = cells.filter(|cell| !is_hole(cell)).flat_map(|(x, y)| {
         let a = (y * (n + 1) + x) as u32;
         let up = a + n as u32 + 1;
@@ -60,6 +64,19 @@ fn noise_that_bends_every_edge_hides_no_border_and_widens_no_hole() {
 }
 
 #[test]
+fn a_slot_that_is_turned_is_another_hole() {
+    let slot = |columns, rows| holed_sheet(30, [columns, rows], 0.0);
+    let (along, across) = (slot(5..13, 6..10), slot(7..11, 4..12));
+    let borders = compared(&along, &across);
+    assert_eq!(borders.holes.len(), 1);
+    let turned = &borders.holes[0];
+    assert!(turned.off.norm() < 1e-9 && turned.wider > 2.0, "{turned:?}");
+    // One whose end is cut off by an element is the same.
+    let shorter = compared(&along, &slot(5..12, 6..10));
+    assert!(shorter.holes[0].wider < 0.5, "{:?}", shorter.holes[0]);
+}
+
+#[test]
 fn a_hole_is_missed_by_no_shift() {
     let plain = sheet(30, 5);
     for shift in 1..=12 {
@@ -80,6 +97,7 @@ fn a_hole_keeps_the_one_that_it_lies_on_whichever_comes_first() {
         radius: 5.0,
         circle: None,
         length: 31.0,
+        moment: Matrix3::zeros(),
         normal: Vector3::z(),
     };
     // The first hole of the source lies beside the hole on which the second one lies.
@@ -101,6 +119,7 @@ fn holes_that_overlap_are_moved_or_resized_but_no_pilot_hole_is() {
         radius,
         circle: None,
         length: 0.0,
+        moment: Matrix3::zeros(),
         normal: Vector3::z(),
     };
     for (off, [a, b], expected) in [
