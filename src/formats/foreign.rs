@@ -122,7 +122,10 @@ impl Foreign {
                 "a mesh in a format that is not read (glTF, FBX, OFF, VTK, Gmsh or HDF5)",
                 EXPORT,
             ),
-            Self::Project => ("a shapematch project", "open it by itself, not as a part"),
+            Self::Project => (
+                "a shapematch project",
+                "open it by itself, under a name that ends in .shapematch, and not as a part; map takes it as --project",
+            ),
             Self::Record => (
                 "a JSON record of shapematch",
                 "give the decks themselves; the record names them",

@@ -12,8 +12,8 @@ const MAX_CONCAVE: usize = 2_000;
 /// either.
 pub(super) fn is_convex(corners: &[Point3]) -> bool {
     let flat = flattened(corners);
-    let n = flat.len();
-    (0..n).all(|i| cross(flat[i], flat[(i + 1) % n], flat[(i + 2) % n]) >= -tolerance(&flat))
+    let (n, least) = (flat.len(), -tolerance(&flat));
+    (0..n).all(|i| cross(flat[i], flat[(i + 1) % n], flat[(i + 2) % n]) >= least)
 }
 
 /// Triangles between the corners, by their indices, in the polygon's sense of rotation. `None`

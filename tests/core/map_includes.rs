@@ -249,8 +249,16 @@ fn a_mirrored_include_of_a_stamped_file_is_what_a_mirrored_pose_makes_of_it() {
 
 #[test]
 fn a_crash_part_that_an_include_mirrors_keeps_its_sides() {
+    // Both have the material angle in the fifth field.
+    for keyword in ["*ELEMENT_SHELL_BETA\n", "*ELEMENT_SHELL_THICKNESS\n"] {
+        mirrored_part_keeps_its_sides(keyword);
+    }
+}
+
+#[track_caller]
+fn mirrored_part_keeps_its_sides(keyword: &str) {
     let sheet = stamped(2, &bent());
-    let part = mirrored(&crash(2, "")).replace("*ELEMENT_SHELL\n", "*ELEMENT_SHELL_BETA\n");
+    let part = mirrored(&crash(2, "")).replace("*ELEMENT_SHELL\n", keyword);
     let cards =
         "             1.0             1.0             1.0             1.0            30.0\n";
     let with_angle = |line: &str| match line.starts_with("     10") {
@@ -278,8 +286,8 @@ fn a_crash_part_that_an_include_mirrors_keeps_its_sides() {
             "out_elements.k"
         };
         let elements = std::fs::read_to_string(pair.path(file)).unwrap();
-        let card = "*ELEMENT_SHELL_BETA\n    1101       7       3       1       2       4\n";
-        assert!(elements.contains(card), "{elements}");
+        let card = format!("{keyword}    1101       7       3       1       2       4\n");
+        assert!(elements.contains(&card), "{elements}");
         assert!(
             elements.contains("  9.00000000E-01 -3.00000000E+01\n"),
             "{elements}"

@@ -252,8 +252,9 @@ impl<'a, 'd> Reader<'a, 'd> {
             let n_beyond = self.beyond.len().min(n_history);
             history.extend(self.beyond.drain(..n_beyond));
             history.extend_from_slice(self.take(n_history - n_beyond, lines)?);
+            let n_before = tensors.len();
             tensors.extend(tensors_in(self.take(n_tensor, tensor_lines)?));
-            if let Some(tensor) = tensors.last() {
+            for tensor in &tensors[n_before..] {
                 self.check_size(head, tensor);
             }
         }

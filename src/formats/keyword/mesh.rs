@@ -15,13 +15,23 @@ pub(crate) enum ElementKeyword {
     Unknown,
 }
 
+/// The fifth field of a shell's thickness card.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum FifthField {
+    /// The material angle, with the options `THICKNESS` and `BETA`.
+    #[default]
+    Angle,
+    /// The id of the material's coordinate system, with the option `MCID`.
+    CoordinateSystem,
+}
+
 /// The cards of one shell after its first, in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct ShellCards {
     /// Corner thickness and material angle.
     pub thickness: bool,
-    /// The fifth field of that card is the material angle, not a coordinate system.
-    pub beta: bool,
+    /// What its fifth field is.
+    pub fifth: FifthField,
     /// The first of the cards that are passed over is the distance of the nodes from the mid-surface.
     pub offset: bool,
     /// Cards for offset and scalar nodes, which are passed over.
@@ -94,8 +104,8 @@ fn shell_cards<'a>(options: impl Iterator<Item = &'a str>) -> Option<ShellCards>
     let mut cards = ShellCards::default();
     for option in options {
         match option {
-            "THICKNESS" | "MCID" => cards.thickness = true,
-            "BETA" => (cards.thickness, cards.beta) = (true, true),
+            "THICKNESS" | "BETA" => cards.thickness = true,
+            "MCID" => (cards.thickness, cards.fifth) = (true, FifthField::CoordinateSystem),
             "OFFSET" => {
                 cards.offset = true;
                 cards.n_passed_over += 1;

@@ -334,7 +334,7 @@ pub(super) fn turn_of(motion: &Matrix4) -> Matrix3 {
 /// What a motion does to directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Rotation {
-    /// Only moves and scales.
+    /// Only moves and scales, without a mirror.
     None,
     /// Turns or mirrors, with the same scale everywhere.
     Rigid(Matrix3),
@@ -347,7 +347,7 @@ enum Rotation {
 /// The orthogonal factor of the motion's linear part (polar decomposition), proper or mirrored.
 fn rotation_of(motion: &Matrix4) -> Rotation {
     let linear: Matrix3 = motion.fixed_view::<3, 3>(0, 0).into_owned();
-    if linear == Matrix3::identity() * linear[(0, 0)] && linear[(0, 0)] != 0.0 {
+    if linear == Matrix3::identity() * linear[(0, 0)] && linear[(0, 0)] > 0.0 {
         return Rotation::None;
     }
     let svd = linear.svd(true, true);

@@ -258,6 +258,8 @@ impl Resolver<'_> {
             Member::OfPartSet(id) => {
                 let parts = self.resolved.get(&(SetKind::Part, id));
                 let parts = parts.map(|set| set.ids.clone()).unwrap_or_default();
+                // Those without elements cost time too.
+                self.n_left = self.n_left.saturating_sub(parts.len() as u64);
                 parts
                     .into_iter()
                     .try_for_each(|part| self.add_part(kind, part, to))

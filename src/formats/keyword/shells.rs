@@ -9,7 +9,7 @@ use super::super::text;
 use super::block::{Block, Cards};
 use super::card::{Card, EIGHT_BY_10, FIVE_BY_16, FieldError, Misread, TEN_BY_8, columns};
 use super::chunks::{Cut, Irregular};
-use super::mesh::ShellCards;
+use super::mesh::{FifthField, ShellCards};
 use super::nodes::shifted;
 use super::number::parse_digits;
 use super::plies::is_ply;
@@ -296,7 +296,10 @@ impl Reader<'_> {
                 self.chunk.extras.push(ShellExtra {
                     shell: self.chunk.shells.len() as u32 - 1,
                     thickness: of_corners.map(|t| t * self.offsets.length),
-                    beta: if self.options.beta { angle } else { 0.0 },
+                    beta: match self.options.fifth {
+                        FifthField::Angle => angle,
+                        FifthField::CoordinateSystem => 0.0,
+                    },
                     plies: None,
                 });
             }

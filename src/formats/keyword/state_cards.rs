@@ -188,6 +188,9 @@ fn push_values(text: &mut Vec<u8>, values: &[f64], per_line: usize, format: Stat
     let width = format.layout.width(standard);
     for line in values.chunks(per_line) {
         for &value in line {
+            // An exponent of three digits has no room in a narrow field.
+            let is_nothing = width < 16 && value.abs() < 1e-99;
+            let value = if is_nothing { 0.0 } else { value };
             push_exponential(text, value, width, digits);
         }
         text.push(b'\n');

@@ -93,7 +93,7 @@ pub enum TransformRow {
     },
     /// `POINT`: moves nothing.
     Point {
-        /// Node id before the offset of the include.
+        /// Number of the point, by which other rows of the transformation name it.
         id: u64,
         /// Coordinates before any row.
         position: Point3,

@@ -37,7 +37,7 @@ pub fn write(
     options: &WriteOptions,
     monitor: &Monitor,
 ) -> Result<Vec<u8>, Cancelled> {
-    let layout = layout_for(largest_id(model));
+    let layout = Layout::holding(largest_id(model));
     let mut deck = Writer {
         text: Vec::new(),
         layout,
@@ -99,20 +99,12 @@ pub fn write_nodes(model: &Model, layout: Layout, monitor: &Monitor) -> Result<V
     let largest = model.nodes.ids().iter().copied().max();
     let mut deck = Writer {
         text: Vec::new(),
-        layout: layout_for(largest.unwrap_or(0)),
+        layout: Layout::holding(largest.unwrap_or(0)),
         monitor,
     };
     deck.text.extend_from_slice(keyword_line(layout).as_bytes());
     deck.nodes(model, &format!("*NODE{}", char::from(deck.layout.suffix())))?;
     Ok(deck.text)
-}
-
-fn layout_for(largest_id: u64) -> Layout {
-    match largest_id {
-        0..=99_999_999 => Layout::Standard,
-        100_000_000..=9_999_999_999 => Layout::I10,
-        _ => Layout::Long,
-    }
 }
 
 struct Writer<'a> {

@@ -5,7 +5,7 @@ use super::super::super::moved::reversed_corners;
 use super::super::block::Block;
 use super::super::card::{Card, FIVE_BY_16, Layout, TEN_BY_8};
 use super::super::exponential::{push_exponential, push_int};
-use super::super::mesh::ShellCards;
+use super::super::mesh::{FifthField, ShellCards};
 use super::super::nodes::shifted;
 use super::super::shells::distinct_corners;
 use super::super::state_cards::push_thickness;
@@ -147,7 +147,7 @@ impl Element<'_> {
             *second = line.to_vec();
         }
         if let Some((card, ..)) = &self.thickness
-            && self.cards.beta
+            && self.cards.fifth == FifthField::Angle
             && place.is_mirrored
             && !card.is_empty_field(FIVE_BY_16, 4)
         {
@@ -157,9 +157,8 @@ impl Element<'_> {
             push_thickness(text, &corners, layout);
             push_exponential(text, angle, layout.width(FIVE_BY_16[4]), 8);
         }
-        // Without BETA the fifth field is a coordinate system.
         if let Some((card, ..)) = &self.thickness
-            && !self.cards.beta
+            && self.cards.fifth == FifthField::CoordinateSystem
             && place.system_offset != 0
             && !card.is_empty_field(FIVE_BY_16, 4)
         {

@@ -192,7 +192,7 @@ fn results_that_are_out_of_step_stay_and_are_told() {
 
 #[test]
 fn the_list_has_the_numbers_of_the_whole_deck() {
-    let deck = "*ELEMENT_SHELL_THICKNESS\n\
+    let deck = "*ELEMENT_SHELL_MCID\n\
 \x20      1       2       3       4       5       6\n\
 \x20            0.5             0.5             0.5            0.75               9\n\
 *ELEMENT_SHELL_OFFSET\n\
@@ -218,7 +218,7 @@ fn the_list_has_the_numbers_of_the_whole_deck() {
     );
     // Nine digits do not fit into eight columns.
     let expected = format!(
-        "*ELEMENT_SHELL_THICKNESS%\n\
+        "*ELEMENT_SHELL_MCID%\n\
 \x20     1001        22 300000003 300000004 300000005 300000006\n\
 \x20 5.00000000E-01  5.00000000E-01  5.00000000E-01  7.50000000E-01              49\n\
 *ELEMENT_SHELL_THICKNESS_OFFSET%\n\
