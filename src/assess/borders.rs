@@ -16,6 +16,9 @@ use holes::{hole, overlaps, partners, smallest_radius, solid_at};
 
 /// Holes in common that hold a part whose surface can slide.
 pub(crate) const HOLES_THAT_HOLD: usize = 2;
+/// Of the outlines across a free motion at least this share must lie on others to hold a part: one end of it can
+/// always be brought onto another.
+pub(crate) const LEAST_ACROSS: f64 = 2.0 / 3.0;
 /// Borders are cut into straight edges; so much of their mean edge length is no deviation.
 const BORDER_FACETS: f64 = 0.06;
 /// So many times the median step aside is none either.
@@ -178,7 +181,7 @@ impl<'a> BorderComparison<'a> {
 
     /// Length of the smaller part's outlines across a motion, as a share of all its borders: where they run along it,
     /// they do not resist it.
-    pub(super) fn across(&self, pose: &Similarity, motion: &FreeMotion) -> f64 {
+    pub(crate) fn across(&self, pose: &Similarity, motion: &FreeMotion) -> f64 {
         let still = Similarity::identity();
         let target_from_own = if self.of_source { pose } else { &still };
         let across = |places: &BorderPlaces| {
@@ -341,7 +344,7 @@ impl Borders {
     }
 
     /// The same of what outlines go across a motion, as [`BorderComparison::across`].
-    pub(super) fn across_within(&self, left: &[f64], distance: f64, motion: &FreeMotion) -> f64 {
+    pub(crate) fn across_within(&self, left: &[f64], distance: f64, motion: &FreeMotion) -> f64 {
         let across = self.pairs.iter().zip(left).filter_map(|(pair, left)| {
             let is_held = pair.kind == PairKind::Outlines && left.abs() <= distance;
             is_held.then(|| BorderPair {

@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 
 use super::ambiguity::{Ambiguity, Clarity};
 use super::assessment::Assessment;
-use super::borders::HOLES_THAT_HOLD;
+use super::borders::{HOLES_THAT_HOLD, LEAST_ACROSS};
 use super::coverage::Coverage;
 use super::pose::{PoseKind, PoseStatement};
 use super::reason::Reason;
@@ -15,7 +15,7 @@ use super::shape::{BorderFit, OVERHANGS, ShapeReason, ShapeStatement, only_overh
 use super::tolerance::{AssessSettings, ShapeTolerance, UNREMARKABLE};
 use super::verdict::Verdict;
 use crate::registration::starts::StartKind;
-use crate::registration::{MatchOutcome, MirrorCheck, Termination};
+use crate::registration::{MatchOutcome, MirrorCheck, Termination, UnitGuess, guess_unit};
 
 /// Fraction of the smaller part that meets the other one for GOOD.
 const ENOUGH_MET: f64 = 0.75;
@@ -31,8 +31,6 @@ const SEVERAL_FROM: f64 = 2.0;
 const SEVERAL_TO: f64 = 500.0;
 /// Borders hold a part whose surface can slide if at least this share of the smaller part's lies on one of the other.
 pub(super) const LEAST_TOGETHER: f64 = 1.0 / 3.0;
-/// Of the outlines across its free motion at least this share must: one end of a part can always be brought together.
-const LEAST_ACROSS: f64 = 2.0 / 3.0;
 /// Beside a hole that has its counterpart this share is enough: an end and a hole hardly ever lie together by chance.
 const LEAST_ACROSS_BESIDE_HOLE: f64 = 0.1;
 /// Parts whose sizes differ by more than this factor are not in one unit, whatever the units are.
@@ -60,14 +58,13 @@ pub(super) fn decide(assessment: &mut Assessment, grounds: &Grounds<'_>) {
         outcome,
         shape,
         mirrored,
-        most_scaled,
         settings,
         ..
     } = *grounds;
     let several = several_parts(assessment, settings.n_target_parts);
     let read = read_errors(settings);
     let sizes = || sizes_far_apart(assessment).filter(|_| several.is_none());
-    let unit = unit(assessment, settings.n_target_parts);
+    let unit = unit(assessment, settings);
     if let Some(units) = unit.or_else(sizes) {
         // Whatever lies on the wrong size by chance is no evidence of pose and shape.
         assessment.verdict = units.severity();
@@ -92,7 +89,7 @@ pub(super) fn decide(assessment: &mut Assessment, grounds: &Grounds<'_>) {
     let is_one = !is_open && is_held && shares_a_piece(shape);
     let of_shape = [
         hand,
-        scale(assessment, most_scaled),
+        scale(assessment, grounds),
         overlap(&assessment.coverage, shape, is_held || is_held_by_holes),
         elsewhere(shape),
     ];
@@ -236,10 +233,13 @@ fn read_errors(settings: &AssessSettings) -> Option<Reason> {
 }
 
 /// Several parts that are smaller together than the source are in another unit, but their size does not tell in which.
-fn unit(assessment: &Assessment, n_parts: usize) -> Option<Reason> {
+/// What is said of the units may be older than the file; a piece of a part differs from it by any factor.
+fn unit(assessment: &Assessment, settings: &AssessSettings) -> Option<Reason> {
     let check = &assessment.scale_check;
     let size_ratio = check.size_ratio;
-    let unit = check.unit.filter(|_| n_parts <= 1 || size_ratio > 1.0);
+    let is_possible = settings.n_target_parts <= 1 || size_ratio > 1.0;
+    let is_one_unit = |unit: &UnitGuess| settings.is_one_unit && !unit.is_factor_of(size_ratio);
+    let unit = check.unit.filter(|unit| is_possible && !is_one_unit(unit));
     unit.map(|unit| Reason::DifferentUnits { size_ratio, unit })
 }
 
@@ -250,10 +250,17 @@ fn sizes_far_apart(assessment: &Assessment) -> Option<Reason> {
     is_far.then_some(Reason::SizesFarApart { size_ratio })
 }
 
-/// A scale that would move the ends of the part by more than springback may.
-fn scale(assessment: &Assessment, most: f64) -> Option<Reason> {
+/// A scale that would move the ends of the part by more than springback may: beside that of a rigid pose, else beside
+/// the factor between two units.
+fn scale(assessment: &Assessment, grounds: &Grounds<'_>) -> Option<Reason> {
     let scale = assessment.scale_check.pair_scale;
-    ((scale - 1.0).abs() > most).then_some(Reason::PairScale { scale })
+    let expected = if grounds.settings.is_scale_free {
+        guess_unit(scale).map_or(1.0, UnitGuess::factor)
+    } else {
+        grounds.outcome.target_from_source.scale
+    };
+    let is_off = (scale / expected - 1.0).abs() > grounds.most_scaled;
+    is_off.then_some(Reason::PairScale { scale })
 }
 
 /// Whether the surfaces alone hold the part, within its tolerance.

@@ -112,6 +112,12 @@ impl PoseEvidence<'_> {
         self.search().displaced(&self.pose, &self.contacts)
     }
 
+    /// Places of the smaller part that meet nothing although the larger one does not end there, and lie off it by more
+    /// than `least`. O(nodes that meet nothing · log triangles).
+    pub(super) fn astray(&self, least: f64) -> Vec<Contact> {
+        self.search().astray(&self.pose, &self.contacts, least)
+    }
+
     fn search(&self) -> ContactSearch<'_> {
         let pair = [self.source, self.target];
         ContactSearch::new(pair, self.pose.scale, self.reach, MAX_NODES)

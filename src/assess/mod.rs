@@ -42,7 +42,7 @@ pub use coverage::{Coverage, OneSided, coverage, overlap_limit, quick_overlap};
 pub use free_motion::{FreeMotion, FreeMotionKind, Freedom, free_motions};
 pub use pose::{PoseKind, PoseStatement};
 pub use reason::Reason;
-pub use shape::{BorderFit, ShapeKind, ShapeReason, ShapeStatement};
+pub use shape::{BentEnd, BorderFit, ShapeKind, ShapeReason, ShapeStatement};
 pub use stretch::PartAxis;
 pub use tolerance::{AssessSettings, ShapeTolerance};
 pub use trims::BorderApart;

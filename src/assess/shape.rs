@@ -15,7 +15,7 @@ use super::tolerance::{ShapeTolerance, UNREMARKABLE};
 use super::trims::{self, BorderApart};
 use crate::geometry::serial::{any_float, xyz};
 use crate::geometry::{Point3, Vector3};
-use local::local_difference;
+use local::local_differences;
 
 /// Parts that meet over less than this share of the smaller one are different parts.
 const LEAST_MET: f64 = 0.5;
@@ -88,6 +88,16 @@ impl BorderFit {
     pub(crate) fn n_alone(&self) -> usize {
         self.only_source + self.only_target
     }
+}
+
+/// An end or a flange that is bent, in the target's frame and unit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct BentEnd {
+    /// How far it lies off where it lies off most.
+    pub by: f64,
+    /// The place.
+    #[serde(with = "xyz")]
+    pub at: Point3,
 }
 
 /// What speaks against one shape. Lengths in target units, places in the target's frame.
@@ -231,6 +241,10 @@ pub struct ShapeStatement {
     /// True if the pose was to be that of the mid-surfaces, without the offset.
     #[serde(default)]
     pub is_offset_removed: bool,
+    /// The end or flange that is bent most, by more than the remainder may be and no more than springback; `None` where
+    /// none is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bent_end: Option<BentEnd>,
     /// Borders and holes.
     #[serde(rename = "rims")]
     pub borders: BorderFit,
@@ -252,11 +266,12 @@ impl ShapeStatement {
             offset: Some(fit.offset).filter(|o| o.abs() > FACETING * evidence.noise),
             is_offset_separable: fit.is_separable,
             is_offset_removed: false,
+            bent_end: None,
             borders: border_fit(&evidence.borders, fit, &tolerance),
             reasons: Vec::new(),
         };
         let mostly = contacts.at_share(&fit.left, SAME_SHARE);
-        statement.reasons = statement.find_reasons(evidence, fit, mostly);
+        statement.find_reasons(evidence, fit, mostly);
         statement.kind = statement.judge(evidence.noise, mostly);
         statement
     }
@@ -280,18 +295,14 @@ impl ShapeStatement {
             offset: None,
             is_offset_separable: false,
             is_offset_removed: false,
+            bent_end: None,
             borders: BorderFit::default(),
             reasons: vec![ShapeReason::HardlyMet { share: 0.0 }],
         }
     }
 
-    /// `mostly` is the remainder at most of the area.
-    fn find_reasons(
-        &self,
-        evidence: &PoseEvidence<'_>,
-        fit: &Fit,
-        mostly: f64,
-    ) -> Vec<ShapeReason> {
+    /// Looks for what speaks against one shape; `mostly` is the remainder at most of the area.
+    fn find_reasons(&mut self, evidence: &PoseEvidence<'_>, fit: &Fit, mostly: f64) {
         let mut reasons = Vec::new();
         let differs = self.remainder > self.tolerance.remainder;
         if self.met < LEAST_MET || differs && self.met < MOSTLY_MET {
@@ -307,7 +318,9 @@ impl ShapeStatement {
                 mostly: mostly > limit,
             });
         } else {
-            reasons.extend(local_difference(evidence, fit, &self.tolerance));
+            let local = local_differences(evidence, fit, &self.tolerance);
+            reasons.extend(local.reason);
+            self.bent_end = local.bent_end;
         }
         reasons.extend(self.border_reasons(evidence, fit));
         // Where the parts differ anyway, nothing more is learned from it.
@@ -323,7 +336,7 @@ impl ShapeStatement {
                 limit: self.tolerance.springback,
             });
         }
-        reasons
+        self.reasons = reasons;
     }
 
     fn border_reasons(&self, evidence: &PoseEvidence<'_>, fit: &Fit) -> Vec<ShapeReason> {
@@ -376,7 +389,8 @@ impl ShapeStatement {
             };
         }
         let facets = (FACETING * noise).max(UNREMARKABLE * self.tolerance.remainder);
-        if self.springback.max(mostly) <= facets && self.offset.is_none() {
+        let is_bent = self.springback.max(mostly) > facets || self.bent_end.is_some();
+        if !is_bent && self.offset.is_none() {
             ShapeKind::Same
         } else {
             ShapeKind::Deformed

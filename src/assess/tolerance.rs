@@ -60,6 +60,10 @@ pub struct AssessSettings {
     pub remove_offset: bool,
     /// A millimetre in target length units; 1 if not known.
     pub millimetre: Option<f64>,
+    /// Both parts are in one unit, as their files or the user say.
+    pub is_one_unit: bool,
+    /// The match was to find the scale too.
+    pub is_scale_free: bool,
     /// How many parts the target consists of; 0 if not known.
     pub n_target_parts: usize,
     /// Errors of the reader about nodes, elements and transformations in the file of the source.

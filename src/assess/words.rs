@@ -5,8 +5,9 @@ use std::f64::consts::PI;
 
 use super::deviation::{ConstantOffset, OffsetKind, OverlapClass};
 use super::{
-    BorderFit, FreeMotion, FreeMotionKind, PartAxis, PartDirection, PoseKind, PoseStatement,
-    PoseUncertainty, Reason, ShapeKind, ShapeReason, ShapeStatement, Twin, TwinAxis, Verdict,
+    BentEnd, BorderFit, FreeMotion, FreeMotionKind, PartAxis, PartDirection, PoseKind,
+    PoseStatement, PoseUncertainty, Reason, ShapeKind, ShapeReason, ShapeStatement, Twin, TwinAxis,
+    Verdict,
 };
 use crate::geometry::{Point3, Vector3};
 use crate::registration::{Termination, UnitGuess};
@@ -243,7 +244,7 @@ impl ShapeReason {
                 let what = if *is_end {
                     "an end or a flange that is bent or lies elsewhere"
                 } else {
-                    "a bead, a dent or a radius that only one part has"
+                    "a bead, a step, a dent or a radius that only one part has"
                 };
                 format!(
                     "the surfaces differ at one place by {by}, more than {limit}, at {}: {what}",
@@ -307,7 +308,8 @@ impl ShapeKind {
 impl ShapeStatement {
     /// "same part, deformed: bend and twist 0.63 of 5.00 mm, remainder 0.13 of 1.00 mm".
     pub fn words(&self, lengths: Lengths) -> String {
-        let is_bent = self.springback.max(self.remainder) > self.tolerance.unremarkable();
+        let is_bent = self.springback.max(self.remainder) > self.tolerance.unremarkable()
+            || self.bent_end.is_some();
         let label = match self.kind {
             ShapeKind::Deformed if self.offset.is_some() && !is_bent => "same surface at an offset",
             kind => kind.label(),
@@ -334,9 +336,18 @@ impl ShapeStatement {
             ),
             _ => String::new(),
         };
+        let end = self
+            .bent_end
+            .map_or_else(String::new, |BentEnd { by, at }| {
+                let by = lengths.within(by, self.tolerance.springback);
+                format!(
+                    ", an end or a flange bent by {by} at {}",
+                    lengths.place(at.into())
+                )
+            });
         let holes = self.holes_of_one_part();
         format!(
-            "{label}: bend and twist {}, remainder {}{offset}{trim}{holes}",
+            "{label}: bend and twist {}, remainder {}{end}{offset}{trim}{holes}",
             lengths.within(self.springback, self.tolerance.springback),
             lengths.within(self.remainder, self.tolerance.remainder)
         )

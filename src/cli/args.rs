@@ -107,7 +107,7 @@ pub struct MatchArgs {
 #[command(next_help_heading = "Input")]
 pub struct InputArgs {
     /// Part of the crash model: an id, several ids (2001,2002), a title (also title:NAME), set:ID,
-    /// shell-set:ID, node-set:ID, or all. Without it, the part of a whole model that fits is found.
+    /// shell-set:ID, node-set:ID, all, or sheet (without tools). Without it, the part of a whole model that fits is found.
     #[arg(long, value_name = "PART")]
     pub crash_part: Option<String>,
     /// Part of the stamped file, as for --crash-part, or sheet. Without it, the sheet: parts that are rigid, or have
@@ -306,10 +306,10 @@ pub struct BenchArgs {
     /// and sizes.
     #[arg(long, conflicts_with_all = ["crash", "robustness"])]
     pub mapping: bool,
-    /// Measure instead how the times of preparing and matching grow from 1,000 to 2,000,000 triangles.
+    /// Measure instead how the times of preparing and matching grow, from 1,500 to 1.2 million triangles.
     #[arg(long, conflicts_with_all = ["crash", "robustness", "mapping"])]
     pub growth: bool,
-    /// With --growth: the largest pair, in triangles of both meshes together.
+    /// With --growth: pairs of at most so many triangles of both meshes together.
     #[arg(
         long,
         value_name = "N",
@@ -323,7 +323,8 @@ pub struct BenchArgs {
         long,
         allow_negative_numbers = true,
         default_value_t = 1,
-        requires = "robustness"
+        requires = "robustness",
+        conflicts_with_all = ["growth", "mapping"]
     )]
     pub seed: u64,
     /// Runs of every scenario on every part.
@@ -332,15 +333,27 @@ pub struct BenchArgs {
         value_name = "N",
         allow_negative_numbers = true,
         default_value_t = 1,
-        requires = "robustness"
+        value_parser = at_least_one,
+        requires = "robustness",
+        conflicts_with_all = ["growth", "mapping"]
     )]
     pub runs: usize,
     /// Only these parts and scenarios, by the beginnings of their names, separated by commas; of the
     /// mapping one part, or "speed" for the times alone.
-    #[arg(long, value_name = "NAMES", requires = "table")]
+    #[arg(
+        long,
+        value_name = "NAMES",
+        requires = "table",
+        conflicts_with = "growth"
+    )]
     pub only: Option<String>,
     /// Write the table with plots as a page.
-    #[arg(long, value_name = "FILE|-", requires = "page")]
+    #[arg(
+        long,
+        value_name = "FILE|-",
+        requires = "page",
+        conflicts_with = "mapping"
+    )]
     pub html: Option<PathBuf>,
 }
 

@@ -61,8 +61,8 @@ pub struct MapArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "What is mapped")]
 pub(super) struct MapChoice {
-    /// Part of the crash model: an id, several ids (2001,2002), a title (also title:NAME), or set:ID,
-    /// shell-set:ID, node-set:ID. Where the parts are matched first, it is found if not given.
+    /// Part of the crash model: an id, several ids (2001,2002), a title (also title:NAME), set:ID,
+    /// shell-set:ID, node-set:ID, all, or sheet (without tools). Where the parts are matched first, it is found if not given.
     #[arg(long, value_name = "PART")]
     pub(super) crash_part: Option<String>,
     /// Part of the stamped files, written as for --crash-part, or all, or sheet. Give one for all files or
@@ -158,7 +158,8 @@ struct MapOutputArgs {
         value_parser = default_thickness
     )]
     default_thickness: DefaultThickness,
-    /// Smallest share of the area that must be mapped, percent; below it the exit status is 1.
+    /// Smallest share of the area that must be mapped, with thickness and stress card where these were
+    /// asked for, percent; below it the exit status is 1.
     #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, value_parser = percent)]
     require: Option<f64>,
     /// Write no deck where less is mapped than --require asks for.
@@ -330,11 +331,11 @@ fn tables(
     Ok(tables)
 }
 
-/// True if less of the area carries values than was required.
+/// True if less of the area carries what was asked for than was required.
 fn is_short(outputs: &MapOutputArgs, record: &MapRecord) -> bool {
     outputs
         .require
-        .is_some_and(|required| record.mapped_area < required / 100.0)
+        .is_some_and(|required| record.full_area() < required / 100.0)
 }
 
 /// Files of a mapping, which belong together.
@@ -390,8 +391,13 @@ fn finish(
         } else {
             ""
         };
-        let [mapped, _] = compared_percents([record.mapped_area, required / 100.0]);
-        log::error!("{mapped} of the area is mapped, {required} % are required{withheld}");
+        let [mapped, _] = compared_percents([record.full_area(), required / 100.0]);
+        let what = if record.bare_area > 0.0 {
+            "has all that was asked for"
+        } else {
+            "is mapped"
+        };
+        log::error!("{mapped} of the area {what}, {required} % are required{withheld}");
         return Ok(ExitCode::from(EXIT_GATE));
     }
     if record.mapped_area <= 0.0 {
@@ -457,8 +463,10 @@ fn check_usage(args: &MapArgs) -> anyhow::Result<()> {
         ));
     }
     let output = &args.output;
+    let options = args.values.recipe().options;
+    let is_one_include = !options.quantities.need_two_files();
     let is_one_file =
-        output.write != KindName::Include && !args.values.recipe().options.replace_states;
+        (output.write != KindName::Include || is_one_include) && !options.replace_states;
     if !is_one_file && output.out.as_deref().is_some_and(is_stdout) {
         let what = "--out - has room for one file";
         return refuse(format!(

@@ -90,7 +90,11 @@ fn fit(text: &mut String, record: &MatchRecord) {
     );
     if let Some(other) = record.alternatives.first() {
         let ratio = other.score_ratio;
-        let which = if ratio < 1.0 { "best" } else { "second-best" };
+        let which = if other.number == 1 {
+            "best"
+        } else {
+            "second-best"
+        };
         let fit = fit_beside(ratio, other.by_shape);
         let _ = writeln!(text, "Next     the {which} pose: {fit}");
     }

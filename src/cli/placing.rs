@@ -1,6 +1,7 @@
 //! Where the stamped parts of a mapping lie: as given, or by a match.
 
 use std::collections::BTreeSet;
+use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::Context as _;
@@ -17,7 +18,7 @@ use crate::pipeline::load::{LoadedPart, prepare};
 use crate::pipeline::map::{PoseOrigin, place as place_part, placing_recipe};
 use crate::pipeline::map_car::CarReason;
 use crate::pipeline::match_parts::{MatchRecipe, MatchRun};
-use crate::pipeline::project::Project;
+use crate::pipeline::project::{Project, ProjectFile};
 use crate::pipeline::units::PairUnits;
 use crate::role::PerRole;
 use crate::text::{Lengths, counted};
@@ -28,6 +29,39 @@ pub(super) struct Placed {
     pub(super) crash: LoadedPart,
     /// The pose of each, and where it comes from.
     pub(super) poses: Vec<(Similarity, PoseOrigin)>,
+}
+
+/// Says which files are not those of a project as they were when it was saved; an error where one has the place of
+/// another.
+fn check_files(
+    project: &Project,
+    path: &Path,
+    crash: &LoadedPart,
+    stamped: &[LoadedPart],
+) -> anyhow::Result<()> {
+    let expected = project.files();
+    let hash_of = |file: ProjectFile| project.entry(file)?.hash;
+    let files = std::iter::once(crash).chain(stamped);
+    for (&file, part) in expected.iter().zip(files) {
+        let (Some(saved), Some(now)) = (hash_of(file), part.hash()) else {
+            continue;
+        };
+        if saved == now {
+            continue;
+        }
+        let name = part.path.display();
+        if let Some(other) = expected.iter().find(|other| hash_of(**other) == Some(now)) {
+            let (other, own) = (other.words(), file.words());
+            let text = format!("{name} is {other} of {}, not {own}", path.display());
+            return Err(UsageError(text).into());
+        }
+        log::warn!(
+            "{name} is not {} of {} as it was when that was saved: the pose may not be that of this file",
+            file.words(),
+            path.display()
+        );
+    }
+    Ok(())
 }
 
 /// The pose of each stamped part as it is given, or by a match on the crash parts that it belongs to.
@@ -58,6 +92,7 @@ pub(super) fn place(
         return match poses.filter(|_| n_poses == n_files) {
             Some(poses) => {
                 choice.lengths.check_project(&project, path)?;
+                check_files(&project, path, &crash, stamped)?;
                 given(crash, poses)
             }
             None if n_poses == n_files => Err(UsageError(format!(

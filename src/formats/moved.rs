@@ -7,35 +7,39 @@ use crate::geometry::Similarity;
 use crate::geometry::tensor::rotated;
 
 /// The model under `motion`: nodes moved, stress and strain tensors turned with them (they are in
-/// the global frame, but for stresses in element axes, which turn with the elements), thicknesses scaled.
+/// the global frame, but for stresses in element axes, which turn with the elements). Of its scale `length_factor` is
+/// that between units, by which thicknesses are multiplied too; the scale of a pose moves places and no thickness.
 /// Ids stay. Nodes whose id is repeated are moved like all others. History variables are kept as they are;
 /// the tensors among them that the file names as such (`NTENSR`) are turned. Density and modulus of
-/// materials are not known in a scaled model. O(model).
+/// materials are not known in another unit. O(model).
 ///
 /// Under a mirror the corners of shells and solids change to the order 2 1 4 3, and with them
 /// corner thicknesses, mid-side nodes and integration points in the plane. The mirrored sheet then
 /// has the same material on the side of its normal as before, so places through the thickness keep
 /// their sign, and the first edge is the same one, so material angles only change theirs. Different corner
 /// thicknesses of a section become those of its shells.
-pub fn moved(model: &Model, motion: &Similarity) -> Model {
+pub fn moved(model: &Model, motion: &Similarity, length_factor: f64) -> Model {
     let mut result = model.clone();
     for position in result.nodes.positions_mut() {
         *position = motion.apply(position);
     }
     for extra in &mut result.shell_extras {
-        extra.thickness = extra.thickness.map(|t| t * motion.scale);
+        extra.thickness = extra.thickness.map(|t| t * length_factor);
     }
     for ply in result.ply_stacks.iter_mut().flatten() {
-        *ply *= motion.scale;
+        *ply *= length_factor;
     }
     for part in &mut result.parts {
-        part.thickness = part.thickness.map(|own| own.map(|t| t * motion.scale));
+        part.thickness = part.thickness.map(|own| own.map(|t| t * length_factor));
+        if let Some(plies) = &mut part.plies {
+            plies.thickness.iter_mut().for_each(|t| *t *= length_factor);
+        }
     }
     for section in &mut result.sections {
-        section.thickness = section.thickness.map(|t| t * motion.scale);
+        section.thickness = section.thickness.map(|t| t * length_factor);
     }
     // In the new unit of lengths they are other numbers, which masses and times decide.
-    if motion.scale != 1.0 {
+    if length_factor != 1.0 {
         for material in &mut result.materials {
             (material.density, material.modulus) = (0.0, 0.0);
         }
@@ -240,7 +244,7 @@ mod tests {
             scale: 10.0,
             ..Pose::new(Vector3::new(0.0, 0.0, 7.0), quarter).into()
         };
-        let result = moved(&model, &motion);
+        let result = moved(&model, &motion, 10.0);
         assert_eq!(result.nodes.ids(), model.nodes.ids());
         let second = result.nodes.position_of(2).unwrap();
         assert!((second - Point3::new(0.0, 10.0, 7.0)).norm() < 1e-12);
@@ -252,7 +256,7 @@ mod tests {
             assert!((found - expected).abs() < 1e-12);
         }
         assert_eq!(shell.history, [9.0]);
-        let back = moved(&result, &motion.inverse());
+        let back = moved(&result, &motion.inverse(), 0.1);
         let third = back.nodes.position_of(3).unwrap();
         assert!((third - mesh.positions()[2]).norm() < 1e-12);
     }

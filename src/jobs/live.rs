@@ -9,7 +9,7 @@ use crate::registration::{self, IterationRecord, StartRecord};
 
 /// Shortest time between two wake-ups for progress: 30 a second.
 const WAKE_INTERVAL: Duration = Duration::from_millis(33);
-/// Iterations kept while nobody looks; older ones are dropped from the live curve only.
+/// Iterations kept while nobody looks; the live curve alone lacks those that come after.
 const MAX_ITERATIONS: usize = 20_000;
 
 /// One iteration of a running match.

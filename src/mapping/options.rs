@@ -60,6 +60,11 @@ impl Quantities {
     pub(super) fn needs_states(self) -> bool {
         self.plastic_strain || self.stress || self.history
     }
+
+    /// Whether an include has a file of elements, which have thicknesses, beside one of states or strains.
+    pub fn need_two_files(self) -> bool {
+        self.thickness && (self.needs_states() || self.strain)
+    }
 }
 
 impl Default for Quantities {

@@ -98,6 +98,11 @@ pub enum PipelineError {
     /// No crash element got values.
     #[error("nothing is mapped: the parts do not lie on each other at this pose")]
     NothingMapped,
+    /// No element got any of the values that were to be written.
+    #[error(
+        "there is nothing to write: no element has a thickness, a stress or a strain of those asked for"
+    )]
+    NothingToWrite,
     /// More layers than a mapping carries.
     #[error(
         "part {part} has {n_layers} layers, but a mapping carries 1 to {}; name fewer (--layers)",

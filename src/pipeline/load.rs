@@ -22,7 +22,7 @@ use crate::registration::Surface;
 use crate::report::command_line::CommandSide;
 use crate::role::{PerRole, Role};
 use crate::samples::{self, SampleFile};
-use crate::text::{counted, parts_by_id};
+use crate::text::{counted, length, parts_by_id};
 use crate::units::{self, KnownUnits, UnitOrigin, Units};
 
 /// What lengths may be multiplied by: wider than any two units of length lie apart.
@@ -91,6 +91,23 @@ pub fn tools_line(file_name: &str, tools: &[u64]) -> Option<String> {
     ))
 }
 
+/// Forming changes the mean thickness by less: of one sheet the stamped part is so many times as thick as the crash part.
+pub(super) const SAME_GAUGE: RangeInclusive<f64> = 0.75..=1.25;
+
+/// Says that the stamped part is thicker or thinner than forming explains; `None` where it is not, or where a thickness is
+/// not known.
+pub fn gauge_line(parts: PerRole<&LoadedPart>) -> Option<String> {
+    let PerRole { crash, stamped } = parts.map(LoadedPart::mean_thickness);
+    let ratio = stamped? / crash?;
+    (ratio.is_finite() && ratio > 0.0 && !SAME_GAUGE.contains(&ratio)).then(|| {
+        format!(
+            "{} is {} times as thick as the crash part in the mean; another gauge or another unit?",
+            parts.stamped.file_name(),
+            length(ratio)
+        )
+    })
+}
+
 /// Says that a part of one file was loaded as both, as a test may do; `None` if none was.
 pub fn same_parts_line(parts: PerRole<&LoadedPart>) -> Option<String> {
     let PerRole { crash, stamped } = parts;
@@ -119,8 +136,6 @@ pub struct LoadReport {
     pub n_parts: usize,
     /// Triangles of the chosen part.
     pub n_triangles: usize,
-    /// Nodes that were joined because they lie at the same place.
-    pub n_joined: usize,
     /// Triangles that were turned to agree with their neighbours.
     pub n_turned: usize,
     /// Warnings and errors of the reader; notes are not counted.
@@ -421,7 +436,6 @@ pub fn prepare(
     let guessed_units = model
         .stated_units
         .or_else(|| units::of_sizes(chosen.mesh.aabb().diagonal(), mean_thickness));
-    let n_vertices = chosen.mesh.n_vertices();
     let scaled = scaled(chosen.mesh, factor, monitor)?;
     let scaled = scaled.map_err(|error| PipelineError::Selection {
         near: String::new(),
@@ -447,7 +461,6 @@ pub fn prepare(
         n_shells: model.shells.len(),
         n_parts: model.parts.len(),
         n_triangles: mesh.n_triangles(),
-        n_joined: n_vertices - mesh.n_vertices(),
         n_turned,
         n_diagnostics: diagnostics(&model.diagnostics) + diagnostics(&chosen.diagnostics),
         read_ms: 0.0,

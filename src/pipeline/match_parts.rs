@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::load::LoadedPart;
 use super::reduce::Levels;
+use super::units::are_in_one_unit;
 use super::{PipelineError, millis_since};
 use crate::assess::{self, AlternativeStatements, AssessSettings, Assessment};
 use crate::geometry::serial::shared;
@@ -14,8 +15,8 @@ use crate::geometry::{Similarity, TriMesh};
 use crate::monitor::Monitor;
 use crate::registration::starts::{self, Start};
 use crate::registration::{
-    self, MatchInput, MatchMonitor, MatchOutcome, MatchSettings, StartMethod, StartSettings,
-    Surface,
+    self, MatchInput, MatchMonitor, MatchOutcome, MatchSettings, Motion, StartMethod,
+    StartSettings, Surface,
 };
 use crate::role::{PerRole, Role};
 pub use crate::settings::MatchRecipe;
@@ -229,6 +230,8 @@ pub fn with_alternative(
     let best = outcome.target_from_source;
     outcome.target_from_source = std::mem::replace(&mut other.target_from_source, best);
     other.score_ratio = 1.0;
+    // The best pose comes first, also before others that fit as well.
+    outcome.alternatives[..=alternative].rotate_right(1);
     for other in &mut outcome.alternatives {
         other.score_ratio /= ratio;
         other.by_shape |= by_shape;
@@ -301,6 +304,8 @@ fn assess_settings(parts: PerRole<&LoadedPart>, settings: &MatchSettings) -> Ass
         shape_tolerance: Some(settings.shape_tolerance).filter(|t| *t > 0.0),
         millimetre,
         remove_offset: settings.remove_offset,
+        is_one_unit: are_in_one_unit(parts),
+        is_scale_free: settings.motion == Motion::Similarity,
         n_target_parts: crash.chosen_part_ids().len(),
         n_source_errors: parts.stamped.model.diagnostics.n_geometry_errors(),
         n_target_errors: crash.model.diagnostics.n_geometry_errors(),

@@ -219,7 +219,8 @@ struct Sample {
     weight: f64,
 }
 
-/// Corners of a regular subdivision of every triangle, about [`N_SAMPLES`] in all, weighted by area.
+/// Corners of a regular subdivision of every triangle, about [`N_SAMPLES`] in all and at least three of each, weighted
+/// by area.
 fn surface_samples(mesh: &TriMesh, monitor: &Monitor) -> Result<Vec<Sample>, Cancelled> {
     let piece = mesh.area() / N_SAMPLES as f64;
     let mut samples = Vec::with_capacity(2 * N_SAMPLES);

@@ -2,7 +2,9 @@
 //! lengths are in.
 
 use super::load::LoadedPart;
+use crate::registration::guess_unit;
 use crate::role::{PerRole, Role};
+use crate::settings::exact;
 use crate::text::tidy_factor;
 use crate::units::{KnownUnits, LengthUnit, UnitOrigin};
 
@@ -141,14 +143,23 @@ pub fn missing_factor(parts: PerRole<&LoadedPart>) -> Option<f64> {
     factor_left(parts).filter(|factor| speaks_for(*factor, parts))
 }
 
+/// Whether both parts are in one unit as they were read, as far as their files or the user say in which.
+pub fn are_in_one_unit(parts: PerRole<&LoadedPart>) -> bool {
+    factor_of_units(parts).is_some_and(|factor| (factor - 1.0).abs() <= 1e-9)
+}
+
 /// The factor between the units of both files that was not applied; `None` if there is none.
 fn factor_left(parts: PerRole<&LoadedPart>) -> Option<f64> {
+    factor_of_units(parts).filter(|factor| (factor - 1.0).abs() > 1e-9)
+}
+
+/// The factor between the units of both files over the one that was applied; `None` where one does not say its unit.
+fn factor_of_units(parts: PerRole<&LoadedPart>) -> Option<f64> {
     let PerRole { crash, stamped } = parts.map(|part| {
         let known = part.units().filter(|known| known.origin.is_firm())?;
         Some(known.units.length)
     });
-    let factor = stamped?.factor_to(crash?) / parts.stamped.settings.length_factor;
-    ((factor - 1.0).abs() > 1e-9).then_some(factor)
+    Some(stamped?.factor_to(crash?) / parts.stamped.settings.length_factor)
 }
 
 /// Whether the sizes of the parts would be more alike with the stamped lengths multiplied by a factor.
@@ -182,5 +193,21 @@ fn agreed(
             units: lengths.times(factor)?.into(),
             origin: UnitOrigin::OtherPart,
         })
+    })
+}
+
+/// Says that a pose of this scale changes no thickness.
+pub fn scaled_pose(part: &LoadedPart, scale: f64) -> Option<String> {
+    let is_rounding = (scale - 1.0).abs() <= 1e-6;
+    let unit = guess_unit(scale).map_or_else(String::new, |unit| {
+        let factor = exact(unit.factor() * part.settings.length_factor);
+        format!("; --stamped-length-factor {factor} converts the file with its thicknesses instead")
+    });
+    (!is_rounding).then(|| {
+        format!(
+            "{}: the pose scales the part by {}, and no thickness{unit}",
+            part.file_name(),
+            exact(scale)
+        )
     })
 }

@@ -22,7 +22,10 @@ struct Unfinished(Mutex<Vec<PathBuf>>);
 
 impl Unfinished {
     /// Makes one, and forgets those that are gone or have got their name.
-    fn add(&self, make: impl FnOnce() -> io::Result<NamedTempFile>) -> io::Result<NamedTempFile> {
+    fn add<F>(
+        &self,
+        make: impl FnOnce() -> io::Result<NamedTempFile<F>>,
+    ) -> io::Result<NamedTempFile<F>> {
         // Under the lock, so that none is made without being listed.
         let mut paths = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let file = make()?;
@@ -80,8 +83,9 @@ pub fn write_file_unless_cancelled(
     write_files_unless_cancelled(&[(path, bytes)], monitor)
 }
 
-/// Files that belong together: none takes the place of an old one before all of them are written and flushed, so that
-/// all keep their old content where one cannot be written, or `monitor` is cancelled.
+/// Files that belong together: all keep their old content where one cannot be written, or `monitor` is cancelled. None
+/// takes the place of an old one before all of them are written and flushed, and what was replaced comes back where one
+/// cannot take its place then, as of a file that another program holds open.
 pub fn write_files_unless_cancelled(
     files: &[(&Path, &[u8])],
     monitor: &Monitor,
@@ -90,8 +94,26 @@ pub fn write_files_unless_cancelled(
     for &(path, bytes) in files {
         ready.push((path, ready_unless_cancelled(path, bytes, monitor)?));
     }
-    for (path, file) in ready {
-        file.take_place().map_err(failed(path))?;
+    take_places(ready)
+}
+
+/// All files or none. The old ones are kept until the last has taken its place.
+fn take_places(ready: Vec<(&Path, ReadyFile)>) -> Result<(), PipelineError> {
+    let (n, mut replaced) = (ready.len(), Vec::new());
+    for (i, (path, file)) in ready.into_iter().enumerate() {
+        let replace = || {
+            let is_last = i + 1 == n;
+            let replaced = if is_last { None } else { file.replaced()? };
+            file.take_place()?;
+            Ok(replaced)
+        };
+        match replace() {
+            Ok(file) => replaced.extend(file),
+            Err(error) => {
+                replaced.into_iter().for_each(Replaced::come_back);
+                return Err(failed(path)(error));
+            }
+        }
     }
     Ok(())
 }
@@ -165,13 +187,14 @@ enum ReadyFile {
 
 impl ReadyFile {
     fn new(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<Self> {
+        // A device or a pipe, which may have no name behind its links.
+        if fs::metadata(path).is_ok_and(|old| !old.is_file() && !old.is_dir()) {
+            write(&mut File::options().write(true).open(path)?)?;
+            return Ok(Self::Direct);
+        }
         let path = followed(path)?;
         let old = match fs::metadata(&path) {
             Ok(old) if old.is_dir() => return Err(io::Error::other("it is a folder")),
-            Ok(old) if !old.is_file() => {
-                write(&mut File::options().write(true).open(&path)?)?;
-                return Ok(Self::Direct);
-            }
             Ok(old) => Some(old),
             Err(error) if error.kind() == io::ErrorKind::NotFound => None,
             Err(error) => return Err(error),
@@ -180,12 +203,46 @@ impl ReadyFile {
         Ok(Self::Beside(beside, path))
     }
 
+    /// What is there now, kept.
+    fn replaced(&self) -> io::Result<Option<Replaced>> {
+        let Self::Beside(_, path) = self else {
+            return Ok(None);
+        };
+        let keep = |name: &Path| {
+            // Not every file system has links.
+            fs::hard_link(path, name).or_else(|_| fs::copy(path, name).map(drop))
+        };
+        let kept = || file_names().make_in(folder_of(path), keep);
+        let old = path.try_exists()?.then(|| UNFINISHED.add(kept));
+        Ok(Some(Replaced {
+            path: path.clone(),
+            old: old.transpose()?,
+        }))
+    }
+
     fn take_place(self) -> io::Result<()> {
         if let Self::Beside(file, path) = self {
             file.persist(&path).map_err(|error| error.error)?;
             sync_folder(folder_of(&path));
         }
         Ok(())
+    }
+}
+
+/// A file whose place another one takes, by a further name; it goes when it is dropped.
+struct Replaced {
+    path: PathBuf,
+    /// `None` where there was no file.
+    old: Option<NamedTempFile<()>>,
+}
+
+impl Replaced {
+    fn come_back(self) {
+        // Where even that fails, the new file stays, which is whole.
+        let _ = match self.old {
+            Some(old) => old.persist(&self.path).map(drop).map_err(|e| e.error),
+            None => fs::remove_file(&self.path),
+        };
     }
 }
 
@@ -205,10 +262,16 @@ fn new_beside(
     Ok(beside)
 }
 
-/// A new file in a folder, with the permissions that the user's other new files have.
-pub(super) fn new_file_in(folder: &Path) -> io::Result<NamedTempFile> {
+/// Names of files that are made for a moment.
+fn file_names<'a>() -> tempfile::Builder<'a, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".shapematch-");
+    builder
+}
+
+/// A new file in a folder, with the permissions that the user's other new files have.
+pub(super) fn new_file_in(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = file_names();
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt as _;
@@ -313,6 +376,30 @@ mod tests {
             ["deck.k", "table.k"],
             "nothing is left behind"
         );
+    }
+
+    #[test]
+    fn what_was_replaced_comes_back_where_a_later_file_cannot_take_its_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let [old, fresh, late] = ["a.k", "b.k", "c.k"].map(|name| folder.path().join(name));
+        write_file(&old, b"old").unwrap();
+        let ready = || {
+            let ready = |path: &PathBuf| ReadyFile::new(path, |file| file.write_all(b"new"));
+            let files = [&old, &fresh, &late].map(|path| (path.as_path(), ready(path).unwrap()));
+            Vec::from(files)
+        };
+        let files = ready();
+        fs::create_dir(&late).unwrap();
+        let error = take_places(files).unwrap_err();
+        assert!(matches!(error, PipelineError::Write { path, .. } if path == late));
+        assert_eq!(fs::read(&old).unwrap(), b"old");
+        assert_eq!(names(folder.path()), ["a.k", "c.k"]);
+        fs::remove_dir(&late).unwrap();
+        take_places(ready()).unwrap();
+        for path in [&old, &fresh, &late] {
+            assert_eq!(fs::read(path).unwrap(), b"new");
+        }
+        assert_eq!(names(folder.path()), ["a.k", "b.k", "c.k"]);
     }
 
     #[test]

@@ -31,6 +31,8 @@ pub struct PairFit {
     /// Root mean square distance of the mirrored fit. Below `rmse` the pairs speak for the
     /// opposite hand; equal for flat points, which have no hand.
     pub mirrored_rmse: f64,
+    /// The scale that fits best mirrored, as `scale`.
+    pub mirrored_scale: f64,
 }
 
 /// Centred second moments of weighted pairs.
@@ -108,13 +110,14 @@ pub(crate) fn fit_pairs<'a>(
         (motion, mse.max(0.0).sqrt(), best_scale)
     };
     let (target_from_source, rmse, scale) = fit(rotation_of(0), trace);
-    let (mirrored, mirrored_rmse, _) = fit(-rotation_of(3), mirrored_trace);
+    let (mirrored, mirrored_rmse, mirrored_scale) = fit(-rotation_of(3), mirrored_trace);
     Ok(PairFit {
         target_from_source,
         rmse,
         scale,
         mirrored,
         mirrored_rmse,
+        mirrored_scale,
     })
 }
 

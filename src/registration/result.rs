@@ -60,7 +60,7 @@ pub struct IterationRecord {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StartOutcome {
-    /// It gave the result.
+    /// It gave the result, or the pose that was settled to the result.
     Won,
     /// It went to the last comparison and lost to a better pose.
     RunnerUp,

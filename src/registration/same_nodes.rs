@@ -27,10 +27,10 @@ pub(super) fn match_same_nodes(
         Hand::Mirrored => true,
         Hand::Either => fit.mirrored_rmse < fit.rmse,
     };
-    let (target_from_source, rmse) = if mirrored {
-        (fit.mirrored, fit.mirrored_rmse)
+    let (target_from_source, rmse, scale) = if mirrored {
+        (fit.mirrored, fit.mirrored_rmse, fit.mirrored_scale)
     } else {
-        (fit.target_from_source, fit.rmse)
+        (fit.target_from_source, fit.rmse, fit.scale)
     };
     let mut distances: Vec<f64> = source
         .iter()
@@ -66,7 +66,11 @@ pub(super) fn match_same_nodes(
             termination: Some(Termination::ClosedForm),
             outcome: Some(StartOutcome::Won),
         }],
-        scale_check: ScaleCheck::new(input.source, input.target, fit.scale),
+        scale_check: ScaleCheck::new(
+            [input.source, input.target],
+            target_from_source.scale,
+            scale,
+        ),
         mirror_check: MirrorCheck {
             score_ratio: None,
             by_borders: false,

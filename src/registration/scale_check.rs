@@ -9,7 +9,7 @@ use crate::units::LengthUnit;
 /// What sizes and pairs show of the units of both meshes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ScaleCheck {
-    /// Target size over source size: root of the ratio of the surface areas.
+    /// Target size over source size under the scale of the pose: root of the ratio of the surface areas.
     #[serde(with = "any_float")]
     pub size_ratio: f64,
     /// Scale that would fit the final pairs best; 1 for equal units.
@@ -35,11 +35,19 @@ impl UnitGuess {
         self.source.factor_to(self.target)
     }
 
+    /// Whether sizes differ by the factor between the units, and not only about by it.
+    pub(crate) fn is_factor_of(self, size_ratio: f64) -> bool {
+        (size_ratio / self.factor()).ln().abs() < SAME_FACTOR.ln()
+    }
+
     /// How many times as large the larger part is: by the factor between the units where the sizes differ by it.
     pub fn times(self, size_ratio: f64) -> f64 {
-        let [measured, factor] = [size_ratio, self.factor()].map(|times| times.max(times.recip()));
-        let is_factor = (measured / factor).ln().abs() < SAME_FACTOR.ln();
-        if is_factor { factor } else { measured }
+        let times = if self.is_factor_of(size_ratio) {
+            self.factor()
+        } else {
+            size_ratio
+        };
+        times.max(times.recip())
     }
 
     /// Every other unit against millimetres, in which sheet parts are modelled.
@@ -70,8 +78,9 @@ impl TryFrom<f64> for UnitGuess {
 }
 
 impl ScaleCheck {
-    pub(crate) fn new(source: &Surface, target: &Surface, pair_scale: f64) -> Self {
-        let size_ratio = (target.measures().area / source.measures().area).sqrt();
+    /// Under a pose of scale `scale`.
+    pub(crate) fn new([source, target]: [&Surface; 2], scale: f64, pair_scale: f64) -> Self {
+        let size_ratio = (target.measures().area / source.measures().area).sqrt() / scale;
         Self {
             size_ratio,
             pair_scale,

@@ -254,33 +254,39 @@ pub fn parse_matrix(text: &str) -> Result<ParsedMatrix, ParseMatrixError> {
         .collect();
     let text = lines.join("\n");
     let text = json_matrix(&text).unwrap_or(&text);
-    let mut notes = Vec::new();
-    let mut values = numbers(text, false);
-    if !is_count(values.len()) {
-        let with_decimal_commas = numbers(text, true);
-        if is_count(with_decimal_commas.len()) {
-            values = with_decimal_commas;
-            notes.push("commas were read as decimal points");
+    // Eight numbers with decimal commas are sixteen whole numbers too, which are no motion.
+    let mut found = matrix_of(&numbers(text, false));
+    if let Err(error) = &found {
+        let with_decimal_commas = matrix_of(&numbers(text, true));
+        let is_counted = !matches!(with_decimal_commas, Err(ParseMatrixError::Count(_)));
+        if with_decimal_commas.is_ok() || matches!(error, ParseMatrixError::Count(_)) && is_counted
+        {
+            found = with_decimal_commas.map(|mut found| {
+                found.notes.push("commas were read as decimal points");
+                found
+            });
         }
     }
+    let mut found = found?;
+    if found.motion.is_mirrored() {
+        found.notes.push("the matrix mirrors");
+    }
+    Ok(found)
+}
+
+fn matrix_of(values: &[f64]) -> Result<ParsedMatrix, ParseMatrixError> {
+    let mut notes = Vec::new();
     let (motion, layout) = match values.len() {
-        16 => four_by_four(&values, &mut notes)?,
-        12 | 13 => twelve(&values)?,
-        7 | 8 => seven(&values)?,
+        16 => four_by_four(values, &mut notes)?,
+        12 | 13 => twelve(values)?,
+        7 | 8 => seven(values)?,
         n => return Err(ParseMatrixError::Count(n)),
     };
-    if motion.is_mirrored() {
-        notes.push("the matrix mirrors");
-    }
     Ok(ParsedMatrix {
         motion,
         layout,
         notes,
     })
-}
-
-fn is_count(n: usize) -> bool {
-    [7, 8, 12, 13, 16].contains(&n)
 }
 
 /// The list after the key `matrix`, if the text is JSON.

@@ -182,6 +182,8 @@ impl Machine {
 /// A distinct pose that came close.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AlternativeRecord {
+    /// Number of the pose among those of the match, of which 1 is the best.
+    pub number: usize,
     /// 4×4 as rows, crash from stamped.
     pub matrix: [[f64; 4]; 4],
     /// Its score over the result's: 1 is equally good, larger is worse.
@@ -324,10 +326,23 @@ pub struct RecordContext {
     pub files: PerRole<FileRecord>,
     /// Time of each phase.
     pub timings: TimingsRecord,
+    /// The alternative of the match that the pose is; `None` for its best pose.
+    pub alternative: Option<usize>,
     /// What the user should know besides the verdict.
     pub warnings: Vec<String>,
     /// The line that does the match again.
     pub command_line: String,
+}
+
+/// Number of the pose at `index` of the others among those of a match, of which 1 is the best; `shown` is the
+/// alternative that has become the result, in whose place the best pose comes first.
+fn number_of_other(shown: Option<usize>, index: usize) -> usize {
+    match shown {
+        None => index + 2,
+        Some(_) if index == 0 => 1,
+        Some(shown) if index <= shown => index + 1,
+        Some(_) => index + 2,
+    }
 }
 
 impl MatchRecord {
@@ -335,7 +350,9 @@ impl MatchRecord {
     pub fn new(outcome: &MatchOutcome, assessment: &Assessment, context: RecordContext) -> Self {
         let pose = &outcome.target_from_source;
         let coverage = &assessment.coverage;
-        let alternatives = outcome.alternatives.iter().map(|other| AlternativeRecord {
+        let alternatives = (0..).zip(&outcome.alternatives);
+        let alternatives = alternatives.map(|(index, other)| AlternativeRecord {
+            number: number_of_other(context.alternative, index),
             matrix: rows(&other.target_from_source),
             score_ratio: other.score_ratio,
             by_shape: other.by_shape,
@@ -398,7 +415,10 @@ impl Parameters {
             settings.starts.method,
             StartMethod::SurfaceNormals | StartMethod::All
         );
-        let has_floor = matches!(settings.selection, PairSelection::Fractional { .. });
+        let has_floor = matches!(
+            settings.selection,
+            PairSelection::Fractional { .. } | PairSelection::TrimmedSearch
+        );
         Self {
             settings: SettingsRecord(context.recipe.clone()),
             floor: has_floor.then_some(outcome.floor),
@@ -416,5 +436,23 @@ pub fn role_of(side: Side) -> Role {
     match side {
         Side::Source => Role::Stamped,
         Side::Target => Role::Crash,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_other_poses_keep_their_numbers_whichever_is_shown() {
+        let numbers = |shown| {
+            (0..4)
+                .map(|index| number_of_other(shown, index))
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(numbers(None), [2, 3, 4, 5]);
+        assert_eq!(numbers(Some(0)), [1, 3, 4, 5]);
+        assert_eq!(numbers(Some(2)), [1, 2, 3, 5]);
+        assert_eq!(numbers(Some(3)), [1, 2, 3, 4]);
     }
 }

@@ -16,7 +16,7 @@ mod value;
 pub use choice::{Choice, ChoiceWords};
 pub use map_table::MAP_SETTINGS;
 pub use recipe::MatchRecipe;
-pub use setting::{Access, Domain, Group, Setting, Unit};
+pub use setting::{Access, Domain, Group, Setting, Unit, changed_setting};
 pub use table::{SETTINGS, setting};
 pub use value::{Value, exact};
 

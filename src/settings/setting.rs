@@ -133,6 +133,20 @@ pub struct Access<R: 'static = MatchRecipe> {
     pub unused: fn(&R) -> Option<&'static str>,
 }
 
+/// The one setting of a table in which two recipes differ, with its value in the second; `None` where they differ in
+/// several, or in none.
+pub fn changed_setting<'t, R>(
+    table: &'t [Setting<R>],
+    [before, after]: [&R; 2],
+) -> Option<(&'t Setting<R>, Value)> {
+    let mut changed = table
+        .iter()
+        .filter(|setting| setting.get(before) != setting.get(after));
+    let setting = changed.next()?;
+    let value = setting.get(after)?;
+    changed.next().is_none().then_some((setting, value))
+}
+
 impl<R> Setting<R> {
     /// Its value; `None` where other settings leave no place for it.
     pub fn get(&self, recipe: &R) -> Option<Value> {

@@ -2,6 +2,7 @@
 //! holes determine where it belongs.
 
 mod hand;
+mod row;
 
 use std::sync::Arc;
 
@@ -144,7 +145,7 @@ pub fn held_by_borders(
     let winner = choice.unwrap_or(result);
     let exactly = Refinement::new(context, found.scale, MAX_NODES);
     let before = choice.map(|_| as_likely(*found, outcome));
-    let mut alternatives = comparison.alternatives(&winner, before, &rivals, outcome);
+    let mut alternatives = comparison.alternatives(&winner, before, &rivals, (outcome, &free));
     let by_holes = refined.iter().filter(|other| !is_close(other));
     alternatives.extend(comparison.with_most_holes(&winner, by_holes, outcome.winner));
     alternatives.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
@@ -556,8 +557,9 @@ impl<'c, 'a> PoseComparison<'c, 'a> {
         winner: &Refined,
         before: Option<Alternative>,
         rivals: &[Refined],
-        outcome: &MatchOutcome,
+        (outcome, free): (&MatchOutcome, &FreeMotion),
     ) -> Vec<Alternative> {
+        let is_held_across = self.is_held_across(winner, free);
         let part = self.context.source.measures().into();
         let is_other =
             |other: &Alternative| !same_pose(&other.target_from_source, &winner.pose, &part);
@@ -566,7 +568,8 @@ impl<'c, 'a> PoseComparison<'c, 'a> {
                 return *other;
             };
             let grain = pose.grain.max(winner.grain);
-            let by_borders = if pose.is_held_as_well(winner, self.remainder()) {
+            let is_next_in_row = !is_held_across && self.holds_as_many_holes(&pose, winner);
+            let by_borders = if is_next_in_row || pose.is_held_as_well(winner, self.remainder()) {
                 1.0
             } else {
                 ratio_by_borders(apart(pose.behind(winner), grain))

@@ -375,6 +375,31 @@ fn that_several_parts_are_matched_as_one_comes_before_their_size() {
 }
 
 #[test]
+fn a_piece_of_a_part_in_the_same_unit_is_in_no_other() {
+    let target = pan(9.0, 0.0, everywhere);
+    let [source, target] = [&target, &target].map(|mesh| Surface::new(mesh, "source").unwrap());
+    let mut outcome = matched(&source, &target);
+    let is_told = |outcome: &MatchOutcome, is_one_unit| {
+        let settings = AssessSettings {
+            is_one_unit,
+            ..AssessSettings::default()
+        };
+        let assessed = assess(&source, &target, outcome, &settings, &Monitor::silent());
+        let reasons = assessed.unwrap().reasons;
+        matches!(reasons[..], [Reason::DifferentUnits { .. }])
+    };
+    // About as large beside the part as centimetres beside millimetres, and exactly so: files that name one unit may
+    // be wrong.
+    for (size_ratio, is_factor) in [(9.4, false), (10.0, true)] {
+        let unit = guess_unit(size_ratio);
+        assert!(unit.is_some());
+        (outcome.scale_check.size_ratio, outcome.scale_check.unit) = (size_ratio, unit);
+        assert!(is_told(&outcome, false));
+        assert_eq!(is_told(&outcome, true), is_factor, "{size_ratio}");
+    }
+}
+
+#[test]
 fn the_size_of_several_parts_names_no_unit() {
     let target = pan(9.0, 0.0, everywhere);
     let [source, target] = [&target, &target].map(|mesh| Surface::new(mesh, "source").unwrap());

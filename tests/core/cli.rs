@@ -274,6 +274,28 @@ fn another_pose_of_the_match_is_written_by_its_number() {
     assert_eq!(run_line(line, &["--json", "-"])["matrix"], second["matrix"]);
 }
 
+#[test]
+fn a_start_pose_with_the_factor_between_units_is_no_hint_at_one_that_is_missing() {
+    let pair = Pair::bundled();
+    let mut truth = pair.truth();
+    truth.scale *= 1000.0;
+    let rows = truth
+        .to_rows()
+        .map(|row| row.map(|x| x.to_string()).join(" "));
+    let in_metres = ["--stamped-length-factor", "0.001", "--json", "-"];
+    let start = ["--start-pose", &rows.join(" ")];
+    let output = pair.run(&[&in_metres[..], &start].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let found = record(&output);
+    assert!((found["scale"].as_f64().unwrap() - 1000.0).abs() < 1e-6);
+    assert_ne!(found["verdict"], "poor", "{}", found["reasons"]);
+    let reasons = found["reasons"].to_string();
+    assert!(
+        !reasons.contains("scale") && !reasons.contains("larger"),
+        "{reasons}"
+    );
+}
+
 fn record(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }

@@ -231,7 +231,7 @@ fn formulation_and_layers_of_plies_and_what_is_known_of_materials_are_kept() {
     );
     assert_eq!(section.nloc, 1.0);
     // In another unit of lengths the numbers of the materials are others.
-    let scaled = moved(&model, &Similarity::from_scale(25.4));
+    let scaled = moved(&model, &Similarity::from_scale(25.4), 25.4);
     assert_eq!(scaled.materials[0].law, "24");
     assert_eq!(
         (scaled.materials[0].density, scaled.materials[0].modulus),
@@ -256,12 +256,12 @@ fn axes_and_integration_rules_are_kept() {
     let [xx, yy, zz, xy, yz, zx] = stress(&model);
     // Element axes turn with the elements; in the order 2 1 4 3 the first one points the other way.
     let turn = Similarity::from(Pose::new(Vector3::x(), Vector3::new(0.3, -1.0, 2.0)));
-    assert_eq!(stress(&moved(&model, &turn)), stress(&model));
-    let mirrored = moved(&model, &turn.after(&Similarity::mirror_x()));
+    assert_eq!(stress(&moved(&model, &turn, 1.0)), stress(&model));
+    let mirrored = moved(&model, &turn.after(&Similarity::mirror_x()), 1.0);
     assert_eq!(stress(&mirrored), [xx, yy, zz, -xy, yz, -zx]);
     // Of another set the stresses are global.
     model.sets.parts.get_mut(&5).unwrap().ids = vec![2];
-    assert_ne!(stress(&moved(&model, &turn)), stress(&model));
+    assert_ne!(stress(&moved(&model, &turn, 1.0)), stress(&model));
 }
 
 /// The widest id decides, whatever has it.
@@ -298,13 +298,13 @@ proptest! {
         turn in proptest::array::uniform3(-3.0..3.0f64),
     ) {
         let motion = Similarity::from(Pose::new(Vector3::from(shift), Vector3::from(turn)));
-        let expected = moved(&everything(1), &motion);
+        let expected = moved(&everything(1), &motion, 1.0);
         let back = again(&expected);
         prop_assert_eq!(expected.nodes.ids(), back.nodes.ids());
         for (a, b) in expected.nodes.positions().iter().zip(back.nodes.positions()) {
             prop_assert!((a - b).norm() <= 1e-10, "{} {}", a, b);
         }
-        let home = moved(&back, &motion.inverse());
+        let home = moved(&back, &motion.inverse(), 1.0);
         let before = everything(1);
         for (a, b) in home.forming.stresses().zip(before.forming.stresses()) {
             for (a, b) in a.points.iter().zip(b.points) {
@@ -339,7 +339,7 @@ proptest! {
         prop_assert_eq!(found.motions.len(), 1);
         let motion = Similarity::from_matrix4(&found.motions[0].matrix, 1e-9).unwrap();
         prop_assert_eq!(motion.is_mirrored(), is_mirrored);
-        let expected = moved(&model, &motion);
+        let expected = moved(&model, &motion, 1.0);
         for (a, b) in expected.nodes.positions().iter().zip(found.nodes.positions()) {
             prop_assert!((a - b).norm() <= 1e-8, "{} {}", a, b);
         }

@@ -241,7 +241,15 @@ fn strict_withholds_the_deck_where_too_little_is_mapped() {
     // The table that says why is written all the same.
     assert!(strip.path("table.csv").exists());
     assert!(!strip.path("out.k").exists() && !strip.path("out_elements.k").exists());
-    let met = strip.map(&["--identity", "--require", "40", "--strict"]);
+    // Of the half that is mapped, half has no stresses.
+    let without = strip.map(&["--identity", "--require", "40", "--strict"]);
+    let told = errors(&without);
+    assert!(
+        told.contains("25.0 % of the area has all that was asked for, 40 % are required"),
+        "{told}"
+    );
+    let thickness = ["--identity", "--quantities", "thickness"];
+    let met = strip.map(&[&thickness[..], &["--require", "40", "--strict"]].concat());
     assert!(met.status.success() && strip.path("out.k").exists());
     assert_eq!(
         strip.map(&["--identity", "--strict"]).status.code(),
@@ -343,7 +351,8 @@ fn presets_may_stand_among_quantities() {
 fn the_area_that_is_asked_for_is_the_one_that_is_told() {
     let strip = Strip::new();
     let told = |required: &str| {
-        let output = strip.map(&["--identity", "--require", required]);
+        let thickness = ["--identity", "--quantities", "thickness"];
+        let output = strip.map(&[&thickness[..], &["--require", required]].concat());
         let summary = String::from_utf8(output.stdout.clone()).unwrap();
         (summary, errors(&output).to_owned())
     };

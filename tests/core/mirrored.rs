@@ -100,7 +100,7 @@ fn triangles(corners: impl Iterator<Item = [Point3; 3]>) -> Vec<[[i64; 3]; 3]> {
 fn the_surface_is_that_of_the_mirrored_mesh() {
     let (before, motion) = (model(), mirror());
     assert!(motion.is_mirrored());
-    let after = moved(&before, &motion);
+    let after = moved(&before, &motion, motion.scale);
     for selection in [Selection::All, Selection::Parts(vec![1])] {
         let expected = before
             .surface(&selection)
@@ -132,7 +132,7 @@ fn what_belongs_to_a_corner_stays_with_its_node() {
 #[track_caller]
 fn stays_with_its_node(before: &Model) {
     let motion = mirror();
-    let after = moved(before, &motion);
+    let after = moved(before, &motion, motion.scale);
     for (index, (old, new)) in (0u32..).zip(before.shells.iter().zip(&after.shells)) {
         let thickness = |model: &Model, node: u32| {
             let shell = &model.shells[index as usize];
@@ -176,7 +176,7 @@ fn material_axis(model: &Model) -> Vector3 {
 #[test]
 fn the_material_axis_is_mirrored() {
     let (before, motion) = (model(), mirror());
-    let after = moved(&before, &motion);
+    let after = moved(&before, &motion, motion.scale);
     let expected = motion.rotation * material_axis(&before);
     let found = material_axis(&after);
     assert!((expected.dot(&found).abs() - 1.0).abs() < 1e-12);
@@ -185,7 +185,7 @@ fn the_material_axis_is_mirrored() {
 #[test]
 fn results_keep_their_side_and_their_corner() {
     let (before, motion) = (model(), mirror());
-    let after = moved(&before, &motion);
+    let after = moved(&before, &motion, motion.scale);
     let shell = after.forming.stress(0);
     let strains: Vec<f64> = shell.points.iter().map(|p| p.plastic_strain).collect();
     assert_eq!(strains, [1.0, 0.0, 3.0, 2.0, 5.0, 4.0, 7.0, 6.0]);
@@ -208,7 +208,7 @@ fn results_keep_their_side_and_their_corner() {
 #[test]
 fn a_mirror_carried_out_twice_is_none() {
     let (before, motion) = (model(), mirror());
-    let back = moved(&moved(&before, &motion), &motion.inverse());
+    let back = moved(&moved(&before, &motion, 2.0), &motion.inverse(), 0.5);
     assert_eq!(back.shells, before.shells);
     assert_eq!(back.solids, before.solids);
     assert_eq!(back.mid_side, before.mid_side);

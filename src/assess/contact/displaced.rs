@@ -1,5 +1,5 @@
-//! Pieces of both parts that lie over each other and too far apart to be compared: a flange or a hem that is not where
-//! it belongs.
+//! Pieces of a part that meet nothing while the other part does not end there: a flange or a hem that is not where it
+//! belongs, or one that is bent the other way or not at all.
 
 use rayon::prelude::*;
 
@@ -27,9 +27,56 @@ impl ContactSearch<'_> {
         });
         displaced.collect()
     }
+
+    /// The nodes of the smaller part that meet nothing, which `contacts` under this pose name, and turn away from the
+    /// place of the larger one closest to them, farther away than `least`, which is none of its borders: there both
+    /// parts go on, each its own way. What was trimmed ends. O(nodes that meet nothing · log triangles).
+    pub(in crate::assess) fn astray(
+        &self,
+        pose: &Similarity,
+        contacts: &Contacts,
+        least: f64,
+    ) -> Vec<Contact> {
+        let sides = Sides::new([self.source, self.target], pose, self.of_source);
+        let nodes = contacts.unmet.par_iter();
+        nodes
+            .filter_map(|&node| sides.astray(node, least))
+            .collect()
+    }
 }
 
 impl Sides<'_> {
+    /// A node and the way from the model's surface to it, if that is longer than `least` and begins off its borders.
+    fn astray(&self, node: WeightedNode, least: f64) -> Option<Contact> {
+        let Self { data, model, .. } = self;
+        let position = data.mesh().positions()[node.vertex as usize];
+        let moved = self.model_from_data.apply(&position);
+        let hit = model.bvh().closest(&moved, f64::INFINITY, None, None)?;
+        let away = moved - hit.point;
+        let length = away.norm() * self.unit;
+        let normal = model.normal_at(&hit);
+        let own = self
+            .model_from_data
+            .rotate(&data.vertex_normals()[node.vertex as usize]);
+        let turns_away = own.dot(&normal).abs() < MIN_FACING;
+        if length <= least || !turns_away || model.is_on_border(&hit) {
+            return None;
+        }
+        let (point, of_target, side) = if self.of_source {
+            (moved, normal, 1.0)
+        } else {
+            (position, self.pose.rotate(&normal), -1.0)
+        };
+        Some(Contact {
+            point,
+            normal: of_target,
+            gap: length.copysign(side * away.dot(&normal)),
+            weight: node.area,
+            // They explain nothing of it.
+            facet: 0.0,
+        })
+    }
+
     /// Whether the place of the model closest to a node has a counterpart on the other part within `reach`.
     fn is_met_beneath(&self, node: WeightedNode, reach: f64) -> bool {
         let Self { data, model, .. } = self;

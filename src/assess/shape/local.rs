@@ -6,7 +6,7 @@ use std::cell::OnceCell;
 use crate::assess::contact::Contact;
 use crate::assess::evidence::PoseEvidence;
 use crate::assess::fit::Fit;
-use crate::assess::shape::ShapeReason;
+use crate::assess::shape::{BentEnd, ShapeReason};
 use crate::assess::tolerance::{ShapeTolerance, is_source_smaller};
 use crate::geometry::{Point3, Vector3};
 use crate::registration::Surface;
@@ -21,6 +21,15 @@ const BESIDE: f64 = 1.7;
 /// What reaches an outline over less than this share of how far it reaches inward is a bead that runs out there. What
 /// reaches it over more is an end, and springback bends ends most: of them as much is accepted as of the whole part.
 const LEAST_OF_END: f64 = 0.5;
+/// What springback bends turns about a line: in the mean it lies beyond the tolerance by half of what it does at its
+/// edge. A flange that lies off by more than this share of it in the mean was shifted as a whole, …
+const SHIFTED: f64 = 0.65;
+/// … which is told where its edge lies off by so many tolerances.
+const SURELY_OFF: f64 = 1.5;
+/// Another layer fits at a place if places of at least this share of its area do, …
+const LAYERED: f64 = 0.3;
+/// … so near, in sizes of what places stand for, that they are none beside it in the same layer.
+const OVER: f64 = 0.7;
 
 /// More nodes that lie far apart are no local difference: the places show them.
 const MOST_FAR: usize = 4000;
@@ -45,18 +54,19 @@ struct Apart<'a> {
     contact: &'a Contact,
     /// What neither bends nor facets explain of the distance.
     left: f64,
-    /// The parts meet there; else neither meets anything near it.
+    /// The parts meet there; else the smaller one meets nothing.
     meets: bool,
     /// Edge of the square that it stands for.
     size: f64,
 }
 
 impl Apart<'_> {
-    /// Whether a point lies beside it within the sheet: a node of the other part there lies off it by the gap.
-    fn is_beside(&self, at: &Point3) -> bool {
+    /// Whether a point lies within so many sizes of it along the sheet: a node of the other part there lies off it by
+    /// the gap.
+    fn is_beside(&self, at: &Point3, sizes: f64) -> bool {
         let away = at - self.contact.point;
         let height = away.dot(&self.contact.normal);
-        let near = BESIDE * self.size;
+        let near = sizes * self.size;
         height.abs() <= self.contact.gap.abs() + near
             && away.norm_squared() - height * height <= near * near
     }
@@ -78,41 +88,69 @@ struct Difference {
     is_end: bool,
 }
 
+impl Difference {
+    /// Whether it is more than is accepted.
+    fn is_beyond(&self) -> bool {
+        self.by > MEASURED * self.limit
+    }
+}
+
+impl From<Difference> for ShapeReason {
+    fn from(found: Difference) -> Self {
+        let Difference {
+            by,
+            limit,
+            at,
+            is_end,
+        } = found;
+        Self::Local {
+            by,
+            limit,
+            at,
+            is_end,
+        }
+    }
+}
+
 /// Where a node lies off the other part, and by how much.
 type Off = (Point3, f64);
 
-/// The largest group of neighbouring places at which what neither bends nor facets explain exceeds the tolerance to
-/// one side, at an end that of springback, and which elements cutting short does not explain either. A piece that lies
-/// too far from its counterpart to meet it counts too. The places are nodes of the smaller part; where all nodes were
-/// measured, those of either part that lie far apart are places too, because a fine mesh has more nodes than are looked
-/// at, and an element of the smaller part may span a bead of the larger one.
+/// What is found at single places.
+#[derive(Default)]
+pub(super) struct LocalDifferences {
+    /// The largest that is more than is accepted.
+    pub(super) reason: Option<ShapeReason>,
+    /// The end that is bent most of those that springback explains.
+    pub(super) bent_end: Option<BentEnd>,
+}
+
+/// Groups of neighbouring places at which what neither bends nor facets explain exceeds the tolerance to one side, at
+/// an end that of springback, and which elements cutting short does not explain either. A piece that lies too far from
+/// its counterpart to meet it, or turns away from it, counts too. The places are nodes of the smaller part; where all
+/// nodes were measured, those of either part that lie far apart are places too, because a fine mesh has more nodes than
+/// are looked at, and an element of the smaller part may span a bead of the larger one.
 /// O(nodes that meet nothing · log triangles + k² + (k + outlines) · log outlines) for k places beyond the limit, and
 /// O(nodes of the larger part) where a group is narrow.
-pub(super) fn local_difference(
+pub(super) fn local_differences(
     evidence: &PoseEvidence<'_>,
     fit: &Fit,
     tolerance: &ShapeTolerance,
-) -> Option<ShapeReason> {
+) -> LocalDifferences {
     let search = LocalSearch {
         evidence,
         fit,
         tolerance,
         outlines: OnceCell::new(),
     };
-    let found = search.among_places().into_iter().chain(search.among_far());
-    let largest = found.max_by(|a, b| a.by.total_cmp(&b.by))?;
-    let Difference {
-        by,
-        limit,
-        at,
-        is_end,
-    } = largest;
-    Some(ShapeReason::Local {
-        by,
-        limit,
-        at,
-        is_end,
-    })
+    let mut found = search.among_places();
+    found.extend(search.among_far());
+    let (beyond, within): (Vec<_>, Vec<_>) = found.into_iter().partition(Difference::is_beyond);
+    let largest = |found: Vec<Difference>| found.into_iter().max_by(|a, b| a.by.total_cmp(&b.by));
+    let ends = within.into_iter().filter(|found| found.is_end).collect();
+    LocalDifferences {
+        reason: largest(beyond).map(ShapeReason::from),
+        bent_end: largest(ends).map(|Difference { by, at, .. }| BentEnd { by, at }),
+    }
 }
 
 /// Two parts whose local differences are looked for.
@@ -126,7 +164,7 @@ struct LocalSearch<'a> {
 
 impl LocalSearch<'_> {
     /// What the places say that the parts are compared at.
-    fn among_places(&self) -> Option<Difference> {
+    fn among_places(&self) -> Vec<Difference> {
         let contacts = &self.evidence.contacts;
         let displaced = self.evidence.displaced();
         let met = contacts.list.iter().zip(&self.fit.left);
@@ -135,14 +173,18 @@ impl LocalSearch<'_> {
             let left = self.fit.left_at(contact, contacts);
             self.apart(contact, left, false)
         });
-        let places: Vec<Apart> = met.chain(others).collect();
+        let astray = self.evidence.astray(self.tolerance.springback);
+        let astray = astray
+            .iter()
+            .filter_map(|contact| self.apart(contact, contact.gap, false));
+        let places: Vec<Apart> = met.chain(others).chain(astray).collect();
         let [of_source, of_target] = self.edges();
         let edge = if self.is_source_smaller() {
             of_target
         } else {
             of_source
         };
-        self.largest(&places, edge, |slim| {
+        self.differences(&places, edge, |slim| {
             let is_asked = |at: &Point3| slim.iter().any(|(g, _)| g.has_beside(at, |_| true));
             let nodes = self.evidence.of_larger(is_asked).into_iter();
             let off = nodes.map(|node| (node.point, self.fit.left_at(&node, contacts)));
@@ -168,9 +210,9 @@ impl LocalSearch<'_> {
         });
         let [edge_of_source, edge_of_target] = self.edges();
         let seen = |places: &[Apart]| places.iter().map(|p| (p.contact.point, p.left)).collect();
-        let of_source_nodes = self.largest(&of_source, edge_of_target, |_| seen(&of_target));
-        let of_target_nodes = self.largest(&of_target, edge_of_source, |_| seen(&of_source));
-        of_source_nodes.into_iter().chain(of_target_nodes).collect()
+        let mut found = self.differences(&of_source, edge_of_target, |_| seen(&of_target));
+        found.extend(self.differences(&of_target, edge_of_source, |_| seen(&of_source)));
+        found
     }
 
     /// A contact as a place apart, if it is one.
@@ -187,17 +229,16 @@ impl LocalSearch<'_> {
         left.abs() > self.tolerance.remainder
     }
 
-    /// The largest of the groups that are no end within the tolerance of one and that elements cutting short do not
-    /// explain; `edge` is the mean edge of the mesh that the places were measured against, and `seen` tells where nodes
-    /// of that mesh lie off beside some groups.
-    fn largest<'b>(
+    /// What the groups say that elements cutting short do not explain; `edge` is the mean edge of the mesh that the
+    /// places were measured against, and `seen` tells where nodes of that mesh lie off beside some groups.
+    fn differences<'b>(
         &self,
         places: &[Apart<'b>],
         edge: f64,
         seen: impl FnOnce(&[(Group<'_, 'b>, Difference)]) -> Vec<Off>,
-    ) -> Option<Difference> {
+    ) -> Vec<Difference> {
         if places.len() < LEAST_PLACES {
-            return None;
+            return Vec::new();
         }
         let groups = groups(places).into_iter();
         let groups = groups.filter(|group| group.places.len() >= LEAST_PLACES);
@@ -209,27 +250,39 @@ impl LocalSearch<'_> {
             slim.retain(|(group, _)| group.is_seen_by(&nodes));
         }
         found.append(&mut slim);
-        let found = found.into_iter().map(|(_, difference)| difference);
-        found.max_by(|a, b| a.by.total_cmp(&b.by))
+        found
+            .into_iter()
+            .map(|(_, difference)| difference)
+            .collect()
     }
 
-    /// What a group says, if it is more than springback explains of an end.
+    /// What a group says; `None` of an empty one.
     fn difference(&self, group: &Group<'_, '_>) -> Option<Difference> {
+        let worst = group.worst()?;
         let outlines = || PointTree::build(outlines(self.evidence));
-        let is_end = group.is_end(self.outlines.get_or_init(outlines));
+        let is_end = group.is_end(self.outlines.get_or_init(outlines))
+            && !(group.is_shifted(self.tolerance.remainder) && self.is_whole(group));
         let limit = if is_end {
             self.tolerance.springback
         } else {
             self.tolerance.remainder
         };
-        let worst = group.worst()?;
-        let found = Difference {
+        Some(Difference {
             by: worst.left.abs(),
             limit,
             at: worst.contact.point,
             is_end,
-        };
-        (found.by > MEASURED * limit).then_some(found)
+        })
+    }
+
+    /// Whether no other layer of the sheet fits where a group lies off: at a hem one does, and which of both is
+    /// compared with which is chance.
+    fn is_whole(&self, group: &Group<'_, '_>) -> bool {
+        let contacts = &self.evidence.contacts;
+        let fits = contacts.list.iter().zip(&self.fit.left);
+        let fits = fits.filter(|(contact, left)| !self.is_beyond(**left) && group.covers(contact));
+        let area: f64 = fits.map(|(contact, _)| contact.weight).sum();
+        area < LAYERED * group.area()
     }
 
     fn is_source_smaller(&self) -> bool {
@@ -285,7 +338,20 @@ impl<'a, 'b> Group<'a, 'b> {
             && self
                 .places
                 .iter()
-                .any(|place| place.is_beside(at) && is_asked(place))
+                .any(|place| place.is_beside(at, BESIDE) && is_asked(place))
+    }
+
+    /// Whether a place lies over or under one of the group.
+    fn covers(&self, contact: &Contact) -> bool {
+        let at = &contact.point;
+        *at >= self.low
+            && *at <= self.high
+            && self.places.iter().any(|place| place.is_beside(at, OVER))
+    }
+
+    /// What its places stand for.
+    fn area(&self) -> f64 {
+        self.places.iter().map(|place| place.size.powi(2)).sum()
     }
 
     /// Whether nodes of the other part lie off beside it to the same side. Nodes lie on the sheet and facets cut it
@@ -311,6 +377,15 @@ impl<'a, 'b> Group<'a, 'b> {
         along > LEAST_OF_END * inward
     }
 
+    /// Whether it lies off as a whole, where what lies off by less than `tolerance` belongs to no group.
+    fn is_shifted(&self, tolerance: f64) -> bool {
+        let beyond = |place: &Apart<'_>| place.left.abs() - tolerance;
+        let weighted = self.places.iter().map(|p| p.size.powi(2) * beyond(p));
+        let mean = weighted.sum::<f64>() / self.area();
+        let most = self.places.iter().map(|p| beyond(p)).fold(0.0, f64::max);
+        tolerance + most > SURELY_OFF * tolerance && mean > SHIFTED * most
+    }
+
     /// Whether elements that cut edges short cannot explain it, because the parts do not even meet there.
     fn is_displaced(&self) -> bool {
         self.places.iter().filter(|place| !place.meets).count() >= LEAST_PLACES
@@ -318,12 +393,11 @@ impl<'a, 'b> Group<'a, 'b> {
 
     /// Mean width of what the places stand for.
     fn width(&self) -> f64 {
-        let area: f64 = self.places.iter().map(|place| place.size.powi(2)).sum();
         let points = || self.places.iter().map(|place| place.contact.point);
         let sum: Vector3 = points().map(|point| point.coords).sum();
         let middle = Point3::from(sum / self.places.len() as f64);
         let arms = points().map(|point| (point - middle).norm());
-        area / (2.0 * arms.fold(0.0, f64::max))
+        self.area() / (2.0 * arms.fold(0.0, f64::max))
     }
 }
 

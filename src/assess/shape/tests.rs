@@ -1,6 +1,7 @@
 //! Statements about shapes whose difference is known.
 
 mod beads;
+mod flanges;
 
 use std::f64::consts::PI;
 

@@ -64,9 +64,10 @@ pub fn growth(
     mut told: impl FnMut(&GrowthRow),
 ) -> Result<GrowthTable, PipelineError> {
     let mut rows = Vec::new();
-    let sizes = SIZES.into_iter().filter(|size| *size <= largest as f64);
-    for size in sizes {
-        let row = row(size, monitor)?;
+    for size in SIZES {
+        let Some(row) = row(size, largest, monitor)? else {
+            break;
+        };
         told(&row);
         rows.push(row);
     }
@@ -79,7 +80,8 @@ pub fn growth(
     })
 }
 
-fn row(size: f64, monitor: &Monitor) -> Result<GrowthRow, PipelineError> {
+/// `None` for a pair of more than `largest` triangles.
+fn row(size: f64, largest: usize, monitor: &Monitor) -> Result<Option<GrowthRow>, PipelineError> {
     let half = 0.5 * size;
     let pair = generate(&SampleSettings {
         part: SamplePart::Floor,
@@ -88,8 +90,11 @@ fn row(size: f64, monitor: &Monitor) -> Result<GrowthRow, PipelineError> {
         stamped_size: Some((FLOOR_STAMPED / half).sqrt()),
         ..SampleSettings::default()
     });
-    let models = PerRole::new(&pair.crash, &pair.stamped)
-        .map(|mesh| Arc::new(Model::from_mesh(&mesh.to_trimesh(), "floor")));
+    let meshes = PerRole::new(&pair.crash, &pair.stamped).map(|mesh| mesh.to_trimesh());
+    if meshes.crash.n_triangles() + meshes.stamped.n_triangles() > largest {
+        return Ok(None);
+    }
+    let models = meshes.map(|mesh| Arc::new(Model::from_mesh(&mesh, "floor")));
     let mut best: Option<GrowthRow> = None;
     for _ in 0..REPEATS {
         let begin = Instant::now();
@@ -117,7 +122,7 @@ fn row(size: f64, monitor: &Monitor) -> Result<GrowthRow, PipelineError> {
             break;
         }
     }
-    best.ok_or(PipelineError::Lacks("a measurement"))
+    Ok(best)
 }
 
 fn prepared(

@@ -2,6 +2,7 @@
 
 use crate::assess::Verdict;
 use crate::pipeline::likeness::AS_ALIKE;
+use crate::pipeline::load::SAME_GAUGE;
 
 /// They do if their surfaces lie at most so many times as far apart, or farther by a distance that means nothing.
 const AS_CLOSE: f64 = 1.25;
@@ -17,8 +18,6 @@ const HARDLY_ONE_SHAPE: f64 = 2.0;
 /// differ as little, and another gauge.
 const SIGNS: usize = 2;
 const NO_CLOSER: f64 = 1.5;
-/// Forming changes the mean thickness by less.
-const SAME_GAUGE: std::ops::RangeInclusive<f64> = 0.75..=1.25;
 
 /// How well a stamped part fits.
 #[derive(Debug, Clone, Copy)]

@@ -431,11 +431,15 @@ impl MapWriter<'_> {
         decks: &[(&ReadFile, ExchangedDeck)],
         path: &Path,
     ) -> Result<Vec<MapFile>, PipelineError> {
-        let has_states = self.run.mapped.states.is_some() || self.run.mapped.strains.is_some();
-        if !has_states && !self.thickness.is_empty() {
+        let layout = self.include_layout(decks);
+        let mut cards = Vec::new();
+        self.add_states(&mut cards, layout)?;
+        if cards.is_empty() && self.thickness.is_empty() {
+            return Err(PipelineError::NothingToWrite);
+        }
+        if cards.is_empty() {
             return Ok(vec![new_file(path, self.elements(head, decks))]);
         }
-        let layout = self.include_layout(decks);
         let mut states = keyword_line(layout).as_bytes().to_vec();
         states.extend_from_slice(head.as_bytes());
         let beside = elements_path(path);
@@ -447,7 +451,7 @@ impl MapWriter<'_> {
             );
             states.extend_from_slice(hint.as_bytes());
         }
-        self.add_states(&mut states, layout)?;
+        states.append(&mut cards);
         states.extend_from_slice(b"*END\n");
         let mut files = vec![new_file(path, states)];
         if !self.thickness.is_empty() {

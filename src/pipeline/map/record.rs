@@ -1,5 +1,6 @@
 //! The mapping in figures: JSON record and element table.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -9,7 +10,7 @@ use serde::{Serialize, Serializer};
 use super::compare::{ComparisonRecord, OtherResult, compare_with};
 use super::values::middle_of;
 use super::verdict::{CheckRecord, checks_of};
-use super::warnings::warnings;
+use super::warnings::{bare, warnings};
 use super::{MapFiles, MapRun, PlacedPart, PoseOrigin, ProbeRecord, ShownValue, covered_values};
 use crate::geometry::chunks::for_chunks;
 use crate::mapping::{
@@ -45,6 +46,9 @@ pub struct MapRecord {
     pub statuses: Vec<StatusRecord>,
     /// Share of the area that carries values.
     pub mapped_area: f64,
+    /// Share of the area whose elements carry some of the values that were asked for, but no thickness or no stress
+    /// card, which other elements have.
+    pub bare_area: f64,
     /// Median signed distance between the sheets along the crash part's normals.
     pub median_offset: f64,
     /// Thickness before and after.
@@ -80,6 +84,11 @@ impl MapRecord {
     pub fn area_share(&self, status: Status) -> f64 {
         let row = self.statuses.iter().find(|row| row.status == status);
         row.map_or(0.0, |row| row.area_share)
+    }
+
+    /// Share of the area that carries all that was asked for.
+    pub fn full_area(&self) -> f64 {
+        self.mapped_area - self.bare_area
     }
 
     /// Name of a stamped file, with as much of its folder as tells it from the others.
@@ -255,6 +264,7 @@ pub fn map_record(
         n_elements: run.shells.len(),
         statuses: statuses.collect(),
         mapped_area: run.mapped.mapped_area(&run.target.mesh),
+        bare_area: bare_area(run),
         median_offset: run.mapped.median_offset,
         thickness,
         thinning,
@@ -323,6 +333,18 @@ fn both_sides(
             .map(|(element, area)| (on_target(element), *area))
             .collect(),
     ]
+}
+
+/// What no element has is told as missing, and no element lacks it.
+fn bare_area(run: &MapRun) -> f64 {
+    let n_mapped = run.mapped.elements.iter();
+    let n_mapped = n_mapped.filter(|report| report.status.has_values()).count();
+    let of_some = bare(run).into_iter().filter(|bare| bare.len() < n_mapped);
+    let bare: BTreeSet<usize> = of_some.flatten().collect();
+    let areas = run.target.mesh.areas();
+    let total: f64 = areas.iter().sum();
+    let area: f64 = bare.into_iter().map(|element| areas[element]).sum();
+    if total > 0.0 { area / total } else { 0.0 }
 }
 
 fn thickness_values(run: &MapRun) -> BothSides {

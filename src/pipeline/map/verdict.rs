@@ -208,12 +208,12 @@ fn pose(record: &MapRecord, lengths: Lengths) -> Option<CheckRecord> {
 fn area(run: &MapRun, record: &MapRecord) -> CheckRecord {
     let elements = &run.mapped.elements;
     let wanted = run.recipe.wanted_area();
-    let [found, limit] = compared_percents([record.mapped_area, wanted]);
+    let [found, limit] = compared_percents([record.full_area(), wanted]);
     CheckRecord {
         name: "Area with values".to_owned(),
         found,
         limit: format!("at least {limit}"),
-        is_met: Some(record.mapped_area >= wanted),
+        is_met: Some(record.full_area() >= wanted),
         picture: CheckPicture::Status,
         worst: elements
             .iter()

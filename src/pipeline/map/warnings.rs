@@ -9,6 +9,7 @@ use crate::formats::keyword::materials::is_known_law;
 use crate::formats::model::Part;
 use crate::mapping::{Facing, MapOptions, Quantities, SourcePart, Status};
 use crate::pipeline::load::{LoadedPart, same_parts_line};
+use crate::pipeline::units::scaled_pose;
 use crate::registration::guess_unit;
 use crate::role::PerRole;
 use crate::settings::exact;
@@ -58,7 +59,7 @@ pub(super) fn warnings(
     warnings.extend(nodes_off(crash));
     for placed in stamped {
         warnings.extend(nodes_off(placed.part));
-        warnings.extend(scaled_pose(placed));
+        warnings.extend(scaled_pose(placed.part, placed.crash_from_stamped.scale));
         warnings.extend(same_parts_line(PerRole::new(crash, placed.part)));
         warnings.extend(file_lines(placed.part, &run.recipe.options));
     }
@@ -301,23 +302,6 @@ fn nodes_off(part: &LoadedPart) -> Option<String> {
     told_of(part, |kind| kind == DiagnosticKind::OffMidSurface, what)
 }
 
-/// Says that a pose with a scale changes no thickness.
-fn scaled_pose(placed: &PlacedPart<'_>) -> Option<String> {
-    let scale = placed.crash_from_stamped.scale;
-    let is_rounding = (scale - 1.0).abs() <= 1e-6;
-    let unit = guess_unit(scale).map_or_else(String::new, |unit| {
-        let factor = exact(unit.factor() * placed.part.settings.length_factor);
-        format!("; --stamped-length-factor {factor} converts the file with its thicknesses instead")
-    });
-    (!is_rounding).then(|| {
-        format!(
-            "{}: the pose scales the part by {}, and no thickness{unit}",
-            placed.part.file_name(),
-            exact(scale)
-        )
-    })
-}
-
 /// Says which results are taken though they may not be meant so.
 fn doubtful_line(part: &LoadedPart) -> Option<String> {
     let what = |n| counted(n, "doubtful result");
@@ -395,14 +379,7 @@ fn not_there(run: &MapRun) -> Option<String> {
 /// Says how many elements with other values have no thickness, and how many have no stress card, with the first
 /// stamped element of each.
 pub(in crate::pipeline) fn bare_elements(run: &MapRun, stamped: &[PlacedPart<'_>]) -> Vec<String> {
-    let mapped = &run.mapped;
-    // Rings that are filled have what their neighbours have.
-    let is_mapped = |status: Status| status.has_values() && status != Status::Filled;
-    let told = |what: &str, have_none: &str, is_bare: &dyn Fn(usize) -> bool| {
-        let elements = mapped.elements.iter().enumerate();
-        let bare =
-            elements.filter(|(element, report)| is_mapped(report.status) && is_bare(*element));
-        let bare: Vec<usize> = bare.map(|(element, _)| element).collect();
+    let told = |what: &str, have_none: &str, bare: &[usize]| {
         let giver = run.giver(*bare.first()?);
         let first = giver.and_then(|(file, shell)| {
             let part = stamped.get(file)?.part;
@@ -416,17 +393,33 @@ pub(in crate::pipeline) fn bare_elements(run: &MapRun, stamped: &[PlacedPart<'_>
             first.unwrap_or_default()
         ))
     };
+    let [no_thickness, no_state] = bare(run);
+    let lines = [
+        told("no thickness", "none above 0", &no_thickness),
+        told("neither stresses nor plastic strains", "none", &no_state),
+    ];
+    lines.into_iter().flatten().collect()
+}
+
+/// The elements with other values that have no thickness, and those that have no stress card, where these were asked
+/// for.
+pub(super) fn bare(run: &MapRun) -> [Vec<usize>; 2] {
+    let mapped = &run.mapped;
+    // Rings that are filled have what their neighbours have.
+    let is_mapped = |status: Status| status.has_values() && status != Status::Filled;
+    let bare = |is_bare: &dyn Fn(usize) -> bool| -> Vec<usize> {
+        let elements = mapped.elements.iter().enumerate();
+        let bare =
+            elements.filter(|(element, report)| is_mapped(report.status) && is_bare(*element));
+        bare.map(|(element, _)| element).collect()
+    };
     let thickness = &mapped.thickness;
     let no_thickness = |element: usize| thickness.get(element).is_some_and(|t| t.is_nan());
     let no_state = |element: usize| {
         let states = mapped.states.as_ref();
         states.is_some_and(|states| states.of(element).is_empty())
     };
-    let lines = [
-        told("no thickness", "none above 0", &no_thickness),
-        told("neither stresses nor plastic strains", "none", &no_state),
-    ];
-    lines.into_iter().flatten().collect()
+    [bare(&no_thickness), bare(&no_state)]
 }
 
 /// What is to be told of states that the crash deck has already.

@@ -145,13 +145,24 @@ fn name_fault(target: &Target) -> Option<Refusal> {
             Err(_) => return Some(Refusal::Extension { name, path }),
         },
     };
-    let file_name = path.file_name()?.to_string_lossy();
-    let fault = file_name_fault(&file_name).filter(|_| is_deck)?;
+    let file_name = path.file_name()?;
+    if is_deck
+        && Path::new(file_name)
+            .extension()
+            .is_some_and(|of| of.eq_ignore_ascii_case("gz"))
+    {
+        return Some(Refusal::OtherFormat { name, path });
+    }
+    let fault = file_name_fault(&file_name.to_string_lossy()).filter(|_| is_deck)?;
     Some(Refusal::DeckName { name, path, fault })
 }
 
 /// Why no file can be written there, in words.
 fn unwritable(path: &Path) -> Option<String> {
+    // A device or a pipe, which may have no name behind its links.
+    if fs::metadata(path).is_ok_and(|old| !old.is_file() && !old.is_dir()) {
+        return None;
+    }
     let path = match followed(path) {
         Ok(path) => path,
         Err(error) => return Some(error.to_string()),
@@ -159,9 +170,6 @@ fn unwritable(path: &Path) -> Option<String> {
     if let Ok(old) = fs::metadata(&path) {
         if old.is_dir() {
             return Some("it is a folder".to_owned());
-        }
-        if !old.is_file() {
-            return None;
         }
         if old.permissions().readonly() {
             return Some("it is read-only".to_owned());

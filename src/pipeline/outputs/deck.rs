@@ -37,7 +37,6 @@ pub fn part_bytes(
         let mesh = part.mesh.transformed(world_from_part);
         return Ok(write(&mesh, &comments.join(", ")));
     }
-    let unit = Similarity::from_scale(part.settings.length_factor);
     let selection = &part.settings.selection;
     let chosen = part.model.of_chosen(selection).map_err(|error| {
         let path = part.path.clone();
@@ -48,7 +47,9 @@ pub fn part_bytes(
             diagnostic: None,
         }
     })?;
-    let model = moved(&chosen, &world_from_part.after(&unit));
+    let factor = part.settings.length_factor;
+    let unit = Similarity::from_scale(factor);
+    let model = moved(&chosen, &world_from_part.after(&unit), factor);
     let options = WriteOptions {
         comments: comments.to_vec(),
         ..WriteOptions::default()
@@ -75,7 +76,7 @@ pub fn reduced_bytes(
     let only = part.chosen_part_ids();
     for own in &mut model.parts {
         let thickness = part.mean_thickness();
-        own.thickness = thickness.map(|thickness| [thickness * world_from_part.scale; 4]);
+        own.thickness = thickness.map(|thickness| [thickness; 4]);
         if let [id] = only[..]
             && let Some(index) = part.model.part_index(id)
         {

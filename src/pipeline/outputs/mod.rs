@@ -10,7 +10,7 @@ use super::PipelineError;
 use super::load::LoadedPart;
 use super::map::{MapRun, OtherResult, WriteKind, elements_path};
 use super::match_parts::{MatchRun, with_alternative};
-use super::units::PairUnits;
+use super::units::{PairUnits, scaled_pose};
 use super::write_file::{write_file_unless_cancelled, write_files_unless_cancelled};
 use crate::formats::Format;
 use crate::geometry::{Similarity, TriMesh};
@@ -381,7 +381,10 @@ impl Output {
                 } else {
                     deck::left_out
                 };
-                let notes = of_deck.and_then(lacks).into_iter().collect();
+                let moves = of_deck.filter(|_| mesh.is_moved());
+                let scale = input.crash_from_stamped.scale;
+                let scaled = moves.and_then(|part| scaled_pose(part, scale));
+                let notes = of_deck.and_then(lacks).into_iter().chain(scaled).collect();
                 return Ok(Made { bytes, notes });
             }
             Self::Mapped(kind) => return mapped::deck(kind, input, monitor),

@@ -1,6 +1,6 @@
 //! The record of a match of two loaded parts.
 
-use crate::pipeline::load::{LoadedPart, same_parts_line};
+use crate::pipeline::load::{LoadedPart, gauge_line, same_parts_line};
 use crate::pipeline::match_parts::MatchRun;
 use crate::pipeline::units::{PairUnits, doubts_of_set_units};
 use crate::registration::{MatchSettings, StartMethod};
@@ -44,6 +44,7 @@ pub fn match_record(run: &MatchRun, parts: PerRole<&LoadedPart>) -> MatchRecord 
             verify_ms: run.times.verify_ms,
             total_ms: read + run.times.total_ms,
         },
+        alternative: run.alternative,
         warnings: warnings(run, parts),
         command_line: command_line(run, parts).line(),
     };
@@ -109,6 +110,7 @@ fn file(part: &LoadedPart, units: Option<KnownUnits>) -> FileRecord {
 fn warnings(run: &MatchRun, parts: PerRole<&LoadedPart>) -> Vec<String> {
     let mut warnings = Vec::from_iter(run.told_alternative());
     warnings.extend(same_parts_line(parts));
+    warnings.extend(gauge_line(parts));
     for (_, part) in parts.iter() {
         warnings.extend(problems(part));
         if part.settings.length_factor != 1.0 {

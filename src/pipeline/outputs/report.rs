@@ -11,8 +11,8 @@ use crate::pipeline::PipelineError;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::match_parts::MatchRun;
 use crate::registration::{Extent, StartGroup, Surface, group_starts};
-use crate::report::CardForm;
 use crate::report::html::{CardsInfo, Figure, Figures, Report};
+use crate::report::{AlternativeRecord, CardForm, MatchRecord};
 use crate::role::PerRole;
 use crate::text::Lengths;
 
@@ -51,7 +51,7 @@ pub fn report(
     let lengths = Lengths::new(record.units.length);
     let renderer = FigureRenderer::new(parts, *pose, &deviation, scale, lengths, monitor)?;
     let mut figures = draw(&renderer, run, &groups, monitor)?;
-    figures.rivals = rivals(&renderer, run, source, lengths)?;
+    figures.rivals = rivals(&renderer, run, source, &record)?;
     let stated = run.assessment.uncertainty();
     let uncertainty_scale = stated.map(uncertainty_scale);
     if let (Some(stated), Some(scale)) = (stated, uncertainty_scale) {
@@ -83,13 +83,15 @@ fn rivals(
     renderer: &FigureRenderer<'_>,
     run: &MatchRun,
     source: &Surface,
-    lengths: Lengths,
+    record: &MatchRecord,
 ) -> Result<Vec<Figure>, PipelineError> {
+    let lengths = Lengths::new(record.units.length);
     let mut figures = Vec::new();
-    for other in Ambiguity::near(&run.outcome.alternatives) {
+    let near = Ambiguity::near(&run.outcome.alternatives);
+    for (other, AlternativeRecord { number, .. }) in near.iter().zip(&record.alternatives) {
         let pose = &other.target_from_source;
         let twin = Twin::of(source, &run.crash_from_stamped, pose);
-        let title = format!("{}: {}", figures.len() + 2, twin.words(lengths));
+        let title = format!("{number}: {}", twin.words(lengths));
         let caption = format!("({}).", fit_beside(other.score_ratio, other.by_shape));
         figures.push(renderer.rival(pose, title, caption)?);
     }

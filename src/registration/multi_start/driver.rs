@@ -20,8 +20,7 @@ use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::RegistrationError;
 use crate::registration::icp::{
-    Data, Floor, Frames, PairSelection, Run, Stage, StageInput, advance, edge_length,
-    natural_floor, stage_rules,
+    Data, Floor, Frames, PairSelection, Run, Stage, StageInput, advance, edge_length, natural_floor,
 };
 use crate::registration::input::MatchInput;
 use crate::registration::observer::MatchMonitor;
@@ -476,9 +475,8 @@ impl<'a> MultiStart<'a> {
         let candidate = &mut candidates[winner.candidate];
         candidate.end(StartOutcome::Won, choice, monitor);
         let flipped = candidate.start.flipped;
-        let Pairing { data, model } = choice.fine;
         if !self.settings.refine_on_full {
-            let rules = stage_rules(Stage::Refine, &self.settings, data, model);
+            let rules = choice.rules(Stage::Refine, &self.settings, choice.fine);
             return Ok(Refined {
                 target_from_source: winner.target_from_source,
                 run: candidate.run.clone(),

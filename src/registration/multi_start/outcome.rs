@@ -69,7 +69,11 @@ pub(crate) fn decide(
         with_all_pairs,
         winner: run.start_idx,
         starts,
-        scale_check: ScaleCheck::new(input.source, input.target, pair_scale),
+        scale_check: ScaleCheck::new(
+            [input.source, input.target],
+            target_from_source.scale,
+            pair_scale,
+        ),
         mirror_check: MirrorCheck {
             score_ratio: opposite.map(|(ratio, _)| ratio),
             by_borders: false,

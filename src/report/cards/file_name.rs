@@ -11,6 +11,8 @@ pub fn file_name_fault(name: &str) -> Option<&'static str> {
         Some("is empty")
     } else if name.chars().any(char::is_control) {
         Some("has a line break or another control character")
+    } else if name.contains(char::REPLACEMENT_CHARACTER) {
+        Some("is no Unicode text")
     } else if name.starts_with('$') {
         Some("begins with $, which makes a comment of it")
     } else if name.starts_with('*') {

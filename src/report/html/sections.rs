@@ -305,7 +305,7 @@ fn key_figure(name: &str, value: &str, note: &str) -> Markup {
 /// How the next best pose fits. The report of an alternative stands beside the best one.
 fn next_pose(other: &AlternativeRecord) -> Markup {
     let ratio = other.score_ratio;
-    let name = if ratio < 1.0 {
+    let name = if other.number == 1 {
         "Best pose"
     } else {
         "Next best pose"

@@ -28,7 +28,7 @@ pub enum Metric {
 pub(crate) struct StepRules {
     pub(crate) metric: Metric,
     pub(crate) motion: Motion,
-    /// Levenberg–Marquardt damping relative to the diagonal.
+    /// Shortens a step, after one that made things worse: by 1 / (1 + damping).
     pub(crate) damping: f64,
     /// Longest translation of one step.
     pub(crate) max_translation: f64,

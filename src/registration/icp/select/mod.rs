@@ -32,8 +32,8 @@ pub enum PairSelection {
         /// Share to keep, 0 < overlap ≤ 1.
         overlap: f64,
     },
-    /// As `Trimmed`, with the overlap in 0.4 … 1 that minimises e(ξ)·ξ⁻³, searched anew in every
-    /// iteration over all shares (Chetverikov et al. search it by golden section over whole runs).
+    /// As `Trimmed`, with the overlap ξ from 0.4 up that minimises √(MSE + floor²)·ξ^−1.5, searched anew in every
+    /// iteration over all shares (Chetverikov et al. minimise MSE·ξ⁻³, by golden section over whole runs).
     TrimmedSearch,
     /// The share f that minimises f^−λ · √(MSE + floor²) (Phillips, Liu, Tomasi 2007, with a floor).
     Fractional {

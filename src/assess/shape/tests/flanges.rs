@@ -1,0 +1,67 @@
+//! Flanges that are bent, shifted or turned the other way.
+
+use super::*;
+
+/// A sheet of 1,000 by 240 mm whose last 40 mm along y are the flange, turned about its fold by an angle in degrees
+/// that depends on x, and lifted.
+fn flanged(rows: usize, turn: impl Fn(f64) -> f64, lift: impl Fn(f64) -> f64) -> Surface {
+    grid([rows, rows], |i, j| {
+        let x = 1000.0 * i as f64 / rows as f64;
+        let y = 240.0 * j as f64 / rows as f64;
+        let beyond = (y - 200.0).max(0.0);
+        let angle = turn(x).to_radians();
+        let on_flange = f64::from(y > 200.0) * lift(x);
+        Point3::new(
+            x,
+            y.min(200.0) + beyond * angle.cos(),
+            beyond * angle.sin() + on_flange + 30.0 * (x / 400.0).sin(),
+        )
+    })
+}
+
+fn reason(source: &Surface, target: &Surface) -> Option<(f64, bool)> {
+    let shape = statement(source, target);
+    shape.reasons.iter().find_map(|reason| match reason {
+        ShapeReason::Local { by, is_end, .. } => Some((*by, *is_end)),
+        _ => None,
+    })
+}
+
+#[test]
+fn a_flange_that_is_bent_the_other_way_or_not_at_all_is_told() {
+    let down = flanged(120, |_| 80.0, |_| 0.0);
+    for turn in [-80.0, 0.0] {
+        let (by, _) = reason(&flanged(110, |_| turn, |_| 0.0), &down).unwrap();
+        assert!(by > 10.0, "{turn}: {by}");
+    }
+    assert_eq!(reason(&flanged(110, |_| 80.0, |_| 0.0), &down), None);
+    // One that ends at the fold was trimmed there.
+    let trimmed = grid([100, 100], |i, j| {
+        let (x, y) = (10.0 * i as f64, 2.0 * j as f64);
+        Point3::new(x, y, 30.0 * (x / 400.0).sin())
+    });
+    assert_eq!(reason(&trimmed, &down), None);
+}
+
+#[test]
+fn a_flange_that_springback_opens_is_accepted_and_stated() {
+    // Of the right angle over a third of its length by as much as lifts its edge by 3.5 mm.
+    let closed = flanged(120, |_| 60.0, |_| 0.0);
+    let opened = |x: f64| 60.0 - 5.0 * (1.0 - ((x - 500.0) / 170.0).powi(2)).max(0.0);
+    let shape = statement(&flanged(110, opened, |_| 0.0), &closed);
+    assert!(shape.reasons.is_empty(), "{shape:?}");
+    assert_eq!(shape.kind, ShapeKind::Deformed);
+    let by = shape.bent_end.unwrap().by;
+    assert!((2.0..=4.0).contains(&by), "{by}");
+    let words = shape.words(Lengths::new(None));
+    assert!(words.contains("an end or a flange bent by "), "{words}");
+}
+
+#[test]
+fn a_flange_that_is_shifted_as_a_whole_is_a_difference() {
+    // A joggle of 4 mm, 150 mm long.
+    let plain = flanged(120, |_| 0.0, |_| 0.0);
+    let step = |x: f64| 4.0 * f64::from((x - 500.0).abs() < 75.0);
+    let (by, is_end) = reason(&flanged(110, |_| 0.0, step), &plain).unwrap();
+    assert!((3.5..=4.5).contains(&by) && !is_end, "{by} {is_end}");
+}
