@@ -22,6 +22,8 @@ use crate::settings::SETTINGS;
 pub struct Document {
     /// The loaded parts.
     pub parts: PerRole<Option<Part>>,
+    /// The parts, by their stamp, of which the user said that all of the crash model are meant.
+    pub all_meant_for: Option<PerRole<u64>>,
     /// Where the stamped part lies.
     pub pose: StampedPose,
     /// Points that were picked on both parts.

@@ -144,6 +144,8 @@ impl AppState {
                 line,
             } => {
                 self.withdraw_about(&OF_PARTS);
+                // That the results of a project are out of date.
+                self.withdraw_about(&[LogStep::Project]);
                 self.tell_result(level, line);
                 if let Some(result) = &self.document.result {
                     self.reduce.keep_match_level(&self.document, &result.run);
@@ -177,6 +179,8 @@ impl AppState {
                 self.parts.refresh_likeness(&self.document);
                 self.follow_step(&before);
                 self.end_move_over_of_one();
+                // What was found at the marked place may be found there no more.
+                self.inspect.forget_place();
             }
             FollowUp::WriteProject(path, replaces) => {
                 return vec![self.write_project(path, replaces)];
@@ -266,14 +270,15 @@ impl AppState {
         let is_single = |part: &Part| part.facts.parts.len() <= 1;
         let is_plain = |both: PerRole<&Part>| is_single(both.crash) && is_single(both.stamped);
         if let Some(both) = self.document.both() {
-            // The match comes next; before it parts may be chosen or reduced.
-            let before = if is_plain(both) {
-                Section::Reduce
+            // The match comes next; parts may be reduced before where there is room, and are chosen where there are
+            // many.
+            let [second, first] = if is_plain(both) {
+                [Section::Reduce, Section::Match]
             } else {
-                Section::Load
+                [Section::Match, Section::Load]
             };
-            self.view.sections.touch(Section::Match);
-            self.view.sections.touch(before);
+            self.view.sections.touch(second);
+            self.view.sections.touch(first);
         }
         // The result of the file as it was before: what is to be done about it is there.
         if self.document.result.is_some() && self.document.current_result().is_none() {

@@ -186,7 +186,7 @@ pub fn info(path: &Path, json: Option<&Path>) -> anyhow::Result<ExitCode> {
         print(&describe(&project, path))?;
     }
     if let Some(json) = json {
-        let text = project.to_text(path);
+        let text = project.to_text(path)?;
         write_json(json, &serde_json::from_str::<serde_json::Value>(&text)?)?;
     }
     Ok(ExitCode::SUCCESS)

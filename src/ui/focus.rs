@@ -48,19 +48,22 @@ pub fn menu<R>(
 /// choice. Called for every choice, with whether it holds.
 pub fn chosen(ui: &Ui, holds: bool, choice: Response) -> Response {
     let opened = ui.scope_id().with("opened");
-    let pass = ui.ctx().cumulative_pass_nr();
-    if holds {
-        let last: Option<u64> = ui.data(|data| data.get_temp(opened));
-        ui.data_mut(|data| data.insert_temp(opened, pass));
-        if last.is_none_or(|last| last + 1 < pass) {
-            choice.request_focus();
-        }
+    if holds && is_just_opened(ui, opened) {
+        choice.request_focus();
     }
     if choice.clicked() {
         // A menu closes by itself after a press of the pointer alone.
         ui.close();
     }
     choice
+}
+
+/// Whether what asks under this id, once in every frame in which it is drawn, was not drawn in the frame before.
+pub fn is_just_opened(ui: &Ui, id: Id) -> bool {
+    let pass = ui.ctx().cumulative_pass_nr();
+    let last: Option<u64> = ui.data(|data| data.get_temp(id));
+    ui.data_mut(|data| data.insert_temp(id, pass));
+    last.is_none_or(|last| last + 1 < pass)
 }
 
 fn is_shown_in(ctx: &Context) -> bool {

@@ -117,6 +117,18 @@ struct Refused {
     is_read: bool,
 }
 
+/// Where the number of the frame is kept in which a field was left by Escape.
+fn left_id(field: egui::Id) -> egui::Id {
+    field.with("left by Escape")
+}
+
+/// Whether the field of this id was just left by Escape, so that what was typed is no value: the keyboard is told as
+/// lost for two frames, Escape in the first of them alone.
+fn is_abandoned(ui: &Ui, field: egui::Id) -> bool {
+    let left_at: Option<u64> = ui.data(|data| data.get_temp(left_id(field)));
+    left_at.is_some_and(|at| ui.ctx().cumulative_pass_nr() <= at + 2)
+}
+
 /// Adds a field of a value that is read when it is left: a text that `read` refuses changes nothing and frames the
 /// field until it is edited again, it or another field takes a value, the value changes, or Escape is pressed. Why it
 /// was refused is said below the field, over what stands there, until the pointer is pressed, and after that where the
@@ -129,7 +141,11 @@ pub fn told_field(
     read: impl Fn(&str) -> Result<f64, String>,
 ) -> Response {
     let refused: RefCell<Option<Option<String>>> = RefCell::default();
+    let is_abandoned = is_abandoned(ui, ui.next_auto_id());
     let read = |text: &str| {
+        if is_abandoned {
+            return None;
+        }
         let value = read(text);
         refused.replace(Some(value.as_ref().err().cloned()));
         value.ok()
@@ -137,6 +153,10 @@ pub fn told_field(
     let field = field.update_while_editing(false).custom_parser(read);
     // A field with a unit is named after the unit otherwise.
     let response = ui.add(field).accessible_name(name);
+    if response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        let now = ui.ctx().cumulative_pass_nr();
+        ui.data_mut(|data| data.insert_temp(left_id(response.id), now));
+    }
     let id = refused_id(&response);
     let known: Option<Refused> = ui.data(|data| data.get_temp(id)).flatten();
     let is_pressed = ui.input(|input| input.pointer.any_pressed());

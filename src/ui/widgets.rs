@@ -132,6 +132,9 @@ pub fn told_button(
         button = button.fill(palette.accent);
     }
     let response = ui.add_enabled(enabled.is_ok(), button);
+    if is_accented {
+        accent_ring(ui, &response);
+    }
     match enabled {
         Ok(()) => response.on_hover_text(tooltip),
         Err(reason) => response.on_disabled_hover_text(format!("{tooltip}\n{reason}")),
@@ -213,7 +216,11 @@ pub fn segments(ui: &mut Ui, labels: &[(&str, bool, bool)], width: f32) -> Optio
         } else if *can && response.hovered() {
             ui.painter().rect_filled(inner, 3.0, palette.hovered);
         }
-        focus_ring(ui, inner, &response);
+        if *is_on {
+            accent_ring(ui, &response);
+        } else {
+            focus_ring(ui, inner, &response);
+        }
         let color = match (*is_on, *can) {
             (true, _) => palette.on_accent,
             (false, true) => palette.text,
@@ -261,6 +268,16 @@ pub fn focus_ring(ui: &Ui, rect: Rect, response: &Response) {
         let ring = Stroke::new(1.5, Palette::of(ui).accent_text);
         let inside = egui::StrokeKind::Inside;
         ui.painter().rect_stroke(rect, 4.0, ring, inside);
+    }
+}
+
+/// The ring within a widget on the accent colour, on which that of other widgets is hardly seen.
+fn accent_ring(ui: &Ui, response: &Response) {
+    if is_ringed(response) {
+        let ring = Stroke::new(1.5, Palette::of(ui).on_accent);
+        let inside = egui::StrokeKind::Inside;
+        let rect = response.rect.shrink(2.5);
+        ui.painter().rect_stroke(rect, 3.0, ring, inside);
     }
 }
 
@@ -330,6 +347,9 @@ pub fn chip(ui: &mut Ui, label: &str, is_on: bool) -> Response {
         palette.widget
     };
     let response = ui.add(Button::new(text).fill(fill).min_size(vec2(0.0, ROW)));
+    if is_on {
+        accent_ring(ui, &response);
+    }
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, label));
     response
 }
@@ -408,13 +428,14 @@ pub fn figure(ui: &mut Ui, name: &str, value: &str) -> Response {
 pub fn large_button(ui: &mut Ui, label: &str, is_usual: bool) -> Response {
     let palette = Palette::of(ui);
     let size = vec2(88.0, ROW + 4.0);
-    let button = if is_usual {
-        let text = RichText::new(label).color(palette.on_accent);
-        Button::new(text).fill(palette.accent)
-    } else {
-        Button::new(label)
-    };
-    ui.add(button.min_size(size))
+    if !is_usual {
+        return ui.add(Button::new(label).min_size(size));
+    }
+    let text = RichText::new(label).color(palette.on_accent);
+    let button = Button::new(text).fill(palette.accent);
+    let response = ui.add(button.min_size(size));
+    accent_ring(ui, &response);
+    response
 }
 
 /// The colour of a verdict.

@@ -1038,7 +1038,7 @@ fn a_file_that_ends_a_result_says_so_and_offers_the_way_back() {
     let toasts = |window: &Window| window.state.log.notices.toasts().filter(offers).count();
     assert_eq!(toasts(&window), 1);
     let told = &window.state.log.latest(LogStep::Load).unwrap().text;
-    assert!(told.contains("ended the result of the match"), "{told}");
+    assert!(told.contains("discarded the result of the match"), "{told}");
     // After another step, undo would take that one back.
     window.apply(MoveCommand::Flip(Axis::X));
     assert_eq!(toasts(&window), 0);
@@ -2462,6 +2462,21 @@ fn the_work_is_kept_unless_the_user_does_not_want_it() {
     };
     window.apply(Command::Settings(Box::new(settings)));
     assert!(!window.state.needs_autosave());
+}
+
+#[test]
+fn that_all_parts_are_meant_is_a_step() {
+    let mut window = Window::with_both();
+    window.apply(PartCommand::UseAll(Role::Crash));
+    assert_eq!(
+        window.state.history.undo_name(),
+        Some("Use all crash parts")
+    );
+    assert!(window.state.document.all_meant_for.is_some());
+    window.act(Action::Undo);
+    assert_eq!(window.state.document.all_meant_for, None);
+    window.act(Action::Redo);
+    assert!(window.state.document.all_meant_for.is_some());
 }
 
 #[test]

@@ -606,7 +606,7 @@ fn a_project_keeps_the_file_that_mappings_are_compared_with() {
     // Its path is seen from the folder of the project.
     let project = window.state.to_project(0);
     let at = folder.path().join("work.shapematch");
-    let text = project.to_text(&at);
+    let text = project.to_text(&at).unwrap();
     assert!(text.contains(r#""mapping_compared_with": "other.k""#));
     let (again, notes) = Project::parse(&text, &at).unwrap();
     assert_eq!(notes, [""; 0]);

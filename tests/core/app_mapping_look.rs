@@ -40,6 +40,7 @@ fn settings_are_one_step_mark_the_mapping_and_stand_in_its_command_line() {
     let mut options = window.state.document.mapping.recipe.options.clone();
     let usual_options = options.clone();
     options.method = MapMethod::Nearest;
+    window.apply(MapCommand::SetOptions(Box::new(options.clone())));
     for reach in [3.0, 4.5] {
         options.max_distance = Some(reach);
         window.apply(MapCommand::SetOptions(Box::new(options.clone())));
@@ -59,8 +60,12 @@ fn settings_are_one_step_mark_the_mapping_and_stand_in_its_command_line() {
     );
     window.act(Action::MapOrCancel);
     assert_eq!(stale(&window), None);
-    window.act(Action::Undo);
-    window.act(Action::Undo);
+    // The mapping, what a slider sent, and the method.
+    for name in ["Map", "Largest distance 4.50 mm", "Method "] {
+        let undone = window.state.history.undo_name().unwrap();
+        assert!(undone.starts_with(name), "{undone}");
+        window.act(Action::Undo);
+    }
     assert_eq!(window.state.document.mapping.recipe.options, usual_options);
     assert_eq!(stale(&window), None);
     window.apply(FileCommand::SetLengthFactor {
@@ -282,7 +287,7 @@ fn pinned_elements_are_told_in_the_report_kept_in_the_project_and_undone() {
     // A project keeps them, and one without them is written as ever.
     let project = window.state.to_project(0);
     let at = folder.path().join("work.shapematch");
-    let (again, notes) = Project::parse(&project.to_text(&at), &at).unwrap();
+    let (again, notes) = Project::parse(&project.to_text(&at).unwrap(), &at).unwrap();
     assert_eq!(
         (again.mapping_pins, notes.len()),
         (elements.map(id).to_vec(), 0)
@@ -295,6 +300,7 @@ fn pinned_elements_are_told_in_the_report_kept_in_the_project_and_undone() {
             .state
             .to_project(0)
             .to_text(&at)
+            .unwrap()
             .contains("mapping_pins")
     );
     let page = Output::MapReport.make(&output_input(&window), None, &Monitor::silent());

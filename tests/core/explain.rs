@@ -446,7 +446,7 @@ fn the_question_about_the_unit_stays_in_sight() {
     window.open("stamped.k", Role::Crash);
     window.open("says_gpa.k", Role::Stamped);
     assert_eq!(window.state.unit_hint(), None);
-    assert_eq!(window.state.view.sections.in_use(), Section::Reduce);
+    assert_eq!(window.state.view.sections.in_use(), Section::Match);
     window.open("metres.k", Role::Stamped);
     assert!(window.state.unit_hint().is_some());
     assert_eq!(window.state.view.sections.in_use(), Section::Load);

@@ -113,7 +113,8 @@ fn a_project_keeps_the_tolerance_with_the_verdict() {
     let text = window
         .state
         .to_project(0)
-        .to_text(std::path::Path::new("a.shapematch"));
+        .to_text(std::path::Path::new("a.shapematch"))
+        .unwrap();
     assert!(text.contains("\"shape_tolerance\": 0.25"), "{text}");
 }
 

@@ -112,6 +112,84 @@ fn open(path: &Path) -> Window {
 }
 
 /// The step back over the opening of a project leads to work that is not of its file.
+#[cfg(unix)]
+#[test]
+fn a_file_whose_name_is_no_text_is_no_part_of_a_project() {
+    use std::os::unix::ffi::OsStrExt as _;
+    let folder = tempfile::tempdir().unwrap();
+    let name = std::ffi::OsStr::from_bytes(b"t\xfcr.dynain");
+    let entry = PartEntry {
+        file: Some(folder.path().join(name)),
+        ..PartEntry::default()
+    };
+    let project = Project {
+        parts: PerRole::new(None, Some(entry)),
+        ..Project::default()
+    };
+    let path = folder.path().join("a.shapematch");
+    let error = project.write(&path).unwrap_err().to_string();
+    assert!(error.contains("invalid UTF-8") && !path.exists(), "{error}");
+}
+
+#[test]
+fn two_other_parts_are_not_saved_into_the_file_of_those_before() {
+    let (folder, [crash, stamped, path]) = folder();
+    let mut window = worked(&crash, &stamped);
+    save(&mut window, &path);
+    let is_saved_there = |window: &Window| window.state.project_path() == Some(&path);
+    assert!(is_saved_there(&window));
+    let mut exchange = |role, file: &Path| {
+        let copy = folder
+            .path()
+            .join(format!("other_{}", file.file_name().unwrap().display()));
+        std::fs::copy(file, &copy).unwrap();
+        window.apply(FileCommand::Open {
+            paths: vec![copy],
+            role: Some(role),
+        });
+        is_saved_there(&window)
+    };
+    // A later state of one part is the same work.
+    assert!(exchange(Role::Stamped, &stamped));
+    assert!(!exchange(Role::Crash, &crash));
+    window.act(Action::Undo);
+    assert!(is_saved_there(&window));
+}
+
+#[test]
+fn a_mapping_says_which_file_is_not_that_of_its_project() {
+    let (folder, [crash, stamped, path]) = folder();
+    let mut window = worked(&crash, &stamped);
+    save(&mut window, &path);
+    let map = |crash: &Path, stamped: &Path| {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_shapematch"))
+            .arg("map")
+            .args([crash, stamped])
+            .args(["--quantities", "thickness", "--project"])
+            .arg(&path)
+            .output();
+        let output = output.unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output.status.code(), said)
+    };
+    let (code, said) = map(&crash, &stamped);
+    assert!(code == Some(0) && !said.contains("is not the"), "{said}");
+    let (code, said) = map(&stamped, &crash);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains(" is the stamped part of "), "{said}");
+    let later = folder.path().join("later.k");
+    let mut text = b"$ later\n".to_vec();
+    let packed = std::fs::File::open(&stamped).unwrap();
+    std::io::Read::read_to_end(&mut flate2::read::GzDecoder::new(packed), &mut text).unwrap();
+    std::fs::write(&later, text).unwrap();
+    let (code, said) = map(&crash, &later);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(
+        said.contains("later.k is not the stamped part of "),
+        "{said}"
+    );
+}
+
 #[test]
 fn the_step_before_a_project_was_opened_is_not_saved_into_its_file() {
     let (_folder, [crash, stamped, path]) = folder();
@@ -574,7 +652,7 @@ fn later_programs_are_named_and_their_additions_kept() {
     let (project, notes) = Project::parse(&more, &path).unwrap();
     assert_eq!(notes.len(), 2, "{notes:?}");
     assert!(notes[0].contains("recipe.settings.mood"), "{notes:?}");
-    assert!(project.to_text(&path).contains("spring_back"));
+    assert!(project.to_text(&path).unwrap().contains("spring_back"));
     std::fs::write(&path, &more).unwrap();
     let mut again = open(&path);
     assert!(again.state.document.current_result().is_some());
@@ -705,7 +783,7 @@ proptest! {
             ..Project::default()
         };
         let path = Path::new("folder/a.shapematch");
-        let (read, notes) = Project::parse(&project.to_text(path), path).unwrap();
+        let (read, notes) = Project::parse(&project.to_text(path).unwrap(), path).unwrap();
         prop_assert_eq!(notes, Vec::<String>::new());
         prop_assert_eq!(read.recipe, project.recipe);
         prop_assert_eq!(read.saved_at, project.saved_at);

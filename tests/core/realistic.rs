@@ -123,7 +123,7 @@ fn its_uncertainty_is_a_picture_and_its_rivals_are_named() {
 fn projects_open_the_example_they_were_saved_with() {
     let path = Path::new("a.shapematch");
     let window = opened();
-    let text = window.state.to_project(0).to_text(path);
+    let text = window.state.to_project(0).to_text(path).unwrap();
     let (project, _) = Project::parse(&text, path).unwrap();
     for (_, entry) in project.parts.iter() {
         assert!(entry.as_ref().unwrap().is_realistic_example);

@@ -174,7 +174,7 @@ fn a_result_that_fits_several_parts_has_a_button_for_each() {
         finish(&mut window);
     }
     // Of two that are equally alike none is proposed.
-    assert!(window.query_by_label("Use all").is_some());
+    assert!(window.query_by_label("Match all as one").is_some());
     assert!(window.query_by_label("Match only this").is_none());
     window.key_press_modifiers(egui::Modifiers::COMMAND, Key::Enter);
     window.run_steps(2);

@@ -204,6 +204,30 @@ fn a_number_that_cannot_be_is_refused_where_it_is_typed() {
 }
 
 #[test]
+fn a_field_that_is_left_by_escape_keeps_its_value() {
+    let mut window = matched();
+    let tolerance = |window: &Window| {
+        let recipe = &window.state().state().document.recipe;
+        recipe.settings.shape_tolerance
+    };
+    let role = egui::accesskit::Role::SpinButton;
+    window
+        .get_by_role_and_label(role, "Shape tolerance")
+        .click();
+    window.run_steps(2);
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    window.event(egui::Event::Text("0.7".to_owned()));
+    window.run_steps(2);
+    window.key_press(egui::Key::Escape);
+    window.run_steps(4);
+    assert_eq!(tolerance(&window), 0.0);
+    // The next text is taken.
+    type_into(&mut window, "Shape tolerance", "0.9");
+    finish(&mut window);
+    assert_eq!(tolerance(&window), 0.9);
+}
+
+#[test]
 fn a_tolerance_that_is_none_is_refused_beside_the_verdict() {
     let mut window = matched();
     let tolerance = |window: &Window| {

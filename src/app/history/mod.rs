@@ -11,9 +11,14 @@ pub use command::HistoryCommand;
 
 use super::{Document, Part};
 use crate::role::Role;
+use crate::settings::{Setting, Value};
+use crate::text::Lengths;
 
 /// Undo steps that are kept; an old document costs little, but not nothing.
 const MAX_STEPS: usize = 500;
+
+/// Commands of a series follow each other within this time, as those of a slider that is dragged do.
+const SERIES: Duration = Duration::from_secs(1);
 
 /// Names a drag, a typed value or another series of commands that is undone as one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -130,12 +135,32 @@ pub struct HistoryRow<'a> {
     pub document: &'a Document,
 }
 
+/// What a change of settings is about, and its name: "Tolerance 0.3 mm", or `several` of more than one.
+pub(super) fn step_words<R>(
+    several: &str,
+    change: Option<(&Setting<R>, Value)>,
+    lengths: Lengths,
+) -> [String; 2] {
+    match change {
+        Some((setting, value)) => {
+            let value = setting.shown(&value, lengths);
+            [
+                setting.label.to_owned(),
+                format!("{} {value}", setting.label),
+            ]
+        }
+        None => [several.to_owned(), several.to_owned()],
+    }
+}
+
 /// One ordered history of whole documents.
 #[derive(Debug, Clone, Default)]
 pub struct History {
     done: Vec<Step>,
     undone: Vec<Step>,
     open_gesture: Option<GestureId>,
+    /// What the last series is about, and its name.
+    series: Option<(String, GestureId)>,
     n_revisions: u64,
     n_gestures: u64,
 }
@@ -154,13 +179,19 @@ impl History {
         GestureId(u64::MAX - self.n_gestures)
     }
 
-    /// The series that the last step of this name is still part of, or a new one.
-    pub(super) fn series(&mut self, name: &str) -> GestureId {
-        let is_last = self.done.last().is_some_and(|step| step.name == name);
-        match self.open_gesture.filter(|_| is_last) {
-            Some(gesture) => gesture,
-            None => self.next_gesture(),
-        }
+    /// The series about this that the last step is part of, if that was made just before `now`, or a new one.
+    pub(super) fn series(&mut self, about: &str, now: Duration) -> GestureId {
+        let is_recent = |step: &Step| now.saturating_sub(step.at) < SERIES;
+        let is_going_on = self.done.last().is_some_and(is_recent);
+        let known = self.series.as_ref().filter(|(known, _)| known == about);
+        let known = known.map(|(_, gesture)| *gesture);
+        known
+            .filter(|gesture| is_going_on && self.is_open(*gesture))
+            .unwrap_or_else(|| {
+                let gesture = self.next_gesture();
+                self.series = Some((about.to_owned(), gesture));
+                gesture
+            })
     }
 
     /// Notes a step that led away from `before`. Further steps of the same gesture only rename it.

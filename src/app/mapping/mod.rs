@@ -27,6 +27,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use self::further::{set_pose, set_units};
+use super::history::step_words;
 use super::work::Work;
 use super::{AppState, ColorBy, Document, Effect, MatchResult, Reason, Shared};
 use crate::geometry::Similarity;
@@ -39,6 +40,7 @@ use crate::pipeline::map::{
 pub use crate::pipeline::map::{DoubtfulElement, FurtherPose, UnmappedElement};
 use crate::pipeline::names::file_name;
 use crate::role::{PerRole, Role};
+use crate::settings::{MAP_SETTINGS, changed_setting};
 
 /// What undo covers of the mapping.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -305,8 +307,10 @@ impl MappingState {
                 });
             }
             MapCommand::SetOptions(options) => {
-                let name = "Mapping settings";
-                let gesture = work.history.series(name);
+                let before = &work.document.mapping.recipe.options;
+                let change = changed_setting(&MAP_SETTINGS, [before, &*options]);
+                let [about, name] = step_words("Mapping settings", change, work.lengths());
+                let gesture = work.history.series(&about, work.log.now);
                 work.commit_in(name, Some(gesture), |document| {
                     document.mapping.recipe.options = *options;
                 });

@@ -16,12 +16,14 @@ pub use explain::Cause;
 pub use preview::{Preview, Previews};
 
 use self::starts::LiveStarts;
+use super::history::step_words;
 use super::work::Work;
 use super::{AppState, Document, Effect, GestureId, OfParts, Reason, Shared};
 use crate::jobs::{Live, Measurement, Stamp, SweepRows};
 use crate::pipeline::sweep::Sweep;
 use crate::registration::starts::Start;
 use crate::registration::{Method, StartSettings};
+use crate::settings::{SETTINGS, changed_setting};
 
 /// A match that gave no pose.
 #[derive(Debug, Clone)]
@@ -72,10 +74,11 @@ impl MatchState {
     pub(super) fn apply(&mut self, work: &mut Work<'_>, command: MatchCommand) -> Vec<Effect> {
         match command {
             MatchCommand::SetRecipe(recipe) => {
-                // A slider sends many recipes; they are one step until something else happens.
-                let name = "Match settings";
-                let gesture = work.history.series(name);
-                self.change_recipe(work, name, gesture, |d| d.set_recipe(*recipe));
+                // A slider sends many recipes, which are one step.
+                let change = changed_setting(&SETTINGS, [&work.document.recipe, &*recipe]);
+                let [about, name] = step_words("Match settings", change, work.lengths());
+                let gesture = work.history.series(&about, work.log.now);
+                self.change_recipe(work, &name, gesture, |d| d.set_recipe(*recipe));
             }
             MatchCommand::SetRemedy {
                 name,

@@ -86,7 +86,7 @@ impl PartsState {
             PartCommand::MatchOnly(part) => return self.match_only(work, part),
             PartCommand::UseAll(role) => {
                 if role == Role::Crash {
-                    self.mean_all(work.document);
+                    work.commit("Use all crash parts".to_owned(), Document::mean_all);
                 }
                 return self.use_parts(work, role, Selection::All);
             }
@@ -273,7 +273,7 @@ impl PartsState {
         let revision = work.history.next_revision();
         let name = self.reselect_name(work, role, &part, &facts);
         let gesture = self.unit_gesture.take();
-        let are_all_meant = self.are_all_meant(work.document);
+        let are_all_meant = work.document.are_all_meant();
         work.previews.drop_all();
         work.commit_in(name, gesture, |document| {
             if is_other_pair {
@@ -285,10 +285,10 @@ impl PartsState {
                 old.revision = revision;
                 old.level = None;
             }
+            if are_all_meant {
+                document.mean_all();
+            }
         });
-        if are_all_meant {
-            self.mean_all(work.document);
-        }
         self.forget_missing(work.document);
         work.log_step(LogStep::Select, Some(role), line, Some(took));
         if let Some(line) = tools {

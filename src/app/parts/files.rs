@@ -450,7 +450,7 @@ impl PartsState {
         further_dropped(work, n_dropped);
         if had_result && work.document.result.is_none() {
             let text =
-                format!("{file} ended the result of the match before it; undo brings it back");
+                format!("{file} discarded the result of the match before it; undo brings it back");
             work.log_step(LogStep::Load, Some(role), text.clone(), None);
             let showing = work.showing(NoticeLevel::Note);
             let notices = &mut work.log.notices;

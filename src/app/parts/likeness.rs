@@ -106,7 +106,7 @@ impl AppState {
             let selection = &crash.loaded.settings.selection;
             !matches!(selection, Selection::All | Selection::Sheet)
         });
-        let is_answered = is_chosen || self.parts.are_all_meant(&self.document);
+        let is_answered = is_chosen || self.document.are_all_meant();
         let result = self.document.result.as_ref();
         let parts = self.document.stamp().parts;
         let is_matched = result.is_some_and(|result| result.stamp.parts == parts);
@@ -124,16 +124,6 @@ impl AppState {
 }
 
 impl PartsState {
-    /// True if the user said that all parts of the crash model are meant.
-    pub(in crate::app) fn are_all_meant(&self, document: &Document) -> bool {
-        self.all_meant_for.contains(&document.stamp().parts)
-    }
-
-    /// The user says so, or said so of the same parts.
-    pub(in crate::app) fn mean_all(&mut self, document: &Document) {
-        self.all_meant_for.push(document.stamp().parts);
-    }
-
     pub(super) fn order_like(&mut self, document: &Document, to: Option<LikeWhat>) {
         self.likeness = to.and_then(|to| document.likeness_to(to));
     }
@@ -153,6 +143,16 @@ impl PartsState {
 }
 
 impl Document {
+    /// True if the user said that all parts of the crash model are meant.
+    pub(in crate::app) fn are_all_meant(&self) -> bool {
+        self.all_meant_for == Some(self.stamp().parts)
+    }
+
+    /// The user says so, or said so of the same parts.
+    pub(in crate::app) fn mean_all(&mut self) {
+        self.all_meant_for = Some(self.stamp().parts);
+    }
+
     /// O(parts · log parts).
     fn more_alike(&self) -> Option<MoreAlike> {
         let both = self.both()?;

@@ -46,8 +46,6 @@ pub struct PartsState {
     likeness: Option<Likeness>,
     /// The part that should be matched alone, if there is one.
     more_alike: Option<OfParts<MoreAlike>>,
-    /// The parts for which the user said that all of the crash model are meant.
-    all_meant_for: Vec<PerRole<u64>>,
     /// What each part is being made again with, by the part's number.
     pending: PerRole<Option<(u64, LoadSettings)>>,
     /// The part that is matched as soon as it is the only one of its deck.

@@ -51,15 +51,16 @@ pub struct ProjectState {
 pub struct Kept {
     document: Document,
     sweep: Option<Shared<Sweep>>,
-    are_all_meant: bool,
 }
 
 impl ProjectState {
     /// The file of a document's project, if it has one. The step back over the opening of a project leads to
-    /// work that is not of its file.
+    /// work that is not of its file, and two other parts are other work.
     fn path_of(&self, document: &Document) -> Option<&PathBuf> {
         let file = self.file.as_ref();
-        file.filter(|(_, project)| *project == document.project)
+        let kept = self.saved.as_ref().map(|kept| &kept.document);
+        let is_its = kept.is_none_or(|kept| document.shares_a_file_with(kept));
+        file.filter(|(_, project)| *project == document.project && is_its)
             .map(|(path, _)| path)
     }
 
@@ -70,6 +71,18 @@ impl ProjectState {
 }
 
 impl Document {
+    /// False if both have parts, and none of one file.
+    fn shares_a_file_with(&self, other: &Self) -> bool {
+        let files = |document: &Self| {
+            let parts = document.parts.iter().filter_map(|(_, part)| part.as_ref());
+            parts
+                .map(|part| part.loaded.path.clone())
+                .collect::<Vec<_>>()
+        };
+        let [own, others] = [self, other].map(files);
+        own.is_empty() || others.is_empty() || own.iter().any(|file| others.contains(file))
+    }
+
     /// Its files: "stamped.dynain on crash.k"; `None` without any.
     pub fn title(&self) -> Option<String> {
         let name = |role| self.part(role).map(|part| part.loaded.file_name());
@@ -86,7 +99,6 @@ impl AppState {
         Kept {
             document: self.document.clone(),
             sweep: self.matching.sweep(&self.document).cloned(),
-            are_all_meant: self.parts.are_all_meant(&self.document),
         }
     }
 
@@ -95,7 +107,6 @@ impl AppState {
         kept.is_some_and(|kept| {
             kept.document == self.document
                 && kept.sweep.as_ref() == self.matching.sweep(&self.document)
-                && kept.are_all_meant == self.parts.are_all_meant(&self.document)
         })
     }
 
@@ -122,7 +133,7 @@ impl AppState {
             let part = document.part(role)?;
             Some(PartEntry {
                 is_hidden: role == Role::Stamped && self.is_file_hidden(&part.loaded.path),
-                are_all_meant: role == Role::Crash && self.parts.are_all_meant(document),
+                are_all_meant: role == Role::Crash && document.are_all_meant(),
                 ..part_entry(part)
             })
         };

@@ -237,7 +237,7 @@ impl AppState {
         self.parts.selected.clear();
         let crash = project.parts.crash.as_ref();
         if crash.is_some_and(|crash| crash.are_all_meant) {
-            self.parts.mean_all(&self.document);
+            self.document.mean_all();
         }
         self.parts.refresh_likeness(&self.document);
         self.view.n_restored += 1;

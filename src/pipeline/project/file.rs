@@ -389,8 +389,9 @@ impl Project {
         Ok((project, notes))
     }
 
-    /// The text of a project that is to lie at `path`, with paths relative to its folder.
-    pub fn to_text(&self, path: &Path) -> String {
+    /// The text of a project that is to lie at `path`, with paths relative to its folder; an error where one of these
+    /// is no Unicode text.
+    pub fn to_text(&self, path: &Path) -> Result<String, PipelineError> {
         let PerRole { crash, stamped } = self.parts.as_ref().map(|entry| {
             let mut entry = entry.clone()?;
             entry.make_relative(folder_of(path));
@@ -400,7 +401,7 @@ impl Project {
         for further in &mut further_stamped {
             further.part.make_relative(folder_of(path));
         }
-        text::pretty(&Written {
+        let text = text::pretty(&Written {
             schema: format!("{SCHEMA}{VERSION}"),
             program: build_id(),
             saved_at: self.saved_at,
@@ -421,17 +422,21 @@ impl Project {
             others: &self.others,
             result: &self.result,
             sweep: &self.sweep,
+        });
+        text.map_err(|error| PipelineError::Write {
+            path: path.to_path_buf(),
+            reason: error.to_string(),
         })
     }
 
     /// Writes the project.
     pub fn write(&self, path: &Path) -> Result<(), PipelineError> {
-        write_file(path, self.to_text(path).as_bytes())
+        write_file(path, self.to_text(path)?.as_bytes())
     }
 
     /// [`Project::write`] into a folder that is made if need be.
     pub fn write_in_new_folder(&self, path: &Path) -> Result<(), PipelineError> {
-        write_file_in_new_folder(path, self.to_text(path).as_bytes())
+        write_file_in_new_folder(path, self.to_text(path)?.as_bytes())
     }
 
     /// Where its stamped files lie, the first one first; `None` for one that has no pose.
@@ -538,8 +543,12 @@ fn relative(path: &Path, folder: &Path) -> PathBuf {
     let Some(seen) = seen else {
         return path.to_path_buf();
     };
-    let pieces: Vec<_> = seen.iter().map(|piece| piece.to_string_lossy()).collect();
-    PathBuf::from(pieces.join("/"))
+    let pieces: Option<Vec<&str>> = seen.iter().map(|piece| piece.to_str()).collect();
+    match pieces {
+        Some(pieces) => PathBuf::from(pieces.join("/")),
+        // Writing it says that it is no text.
+        None => seen,
+    }
 }
 
 fn string(value: Option<Value>) -> String {

@@ -6,14 +6,13 @@ use serde::Serialize;
 use serde_json::Value;
 use serde_json::ser::{Formatter, Serializer};
 
-/// A value as text with a line for each field.
-pub(super) fn pretty(value: &impl Serialize) -> String {
+/// A value as text with a line for each field. Paths that are no Unicode text have none.
+pub(super) fn pretty(value: &impl Serialize) -> serde_json::Result<String> {
     let mut bytes = Vec::new();
     let mut serializer = Serializer::with_formatter(&mut bytes, Lines::default());
-    // Writing to memory cannot fail, and all our types have a text.
-    let _ = value.serialize(&mut serializer);
+    value.serialize(&mut serializer)?;
     bytes.push(b'\n');
-    String::from_utf8_lossy(&bytes).into_owned()
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 #[derive(Default)]
@@ -103,7 +102,7 @@ mod tests {
         let value = json!({"a": [1.5, [2, 3]], "b": {}, "c": [{"d": null}]});
         let text =
             "{\n  \"a\": [1.5, [2, 3]],\n  \"b\": {},\n  \"c\": [{\n    \"d\": null\n  }]\n}\n";
-        assert_eq!(pretty(&value), text);
+        assert_eq!(pretty(&value).unwrap(), text);
     }
 
     #[test]

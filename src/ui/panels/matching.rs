@@ -16,8 +16,8 @@ use crate::text::{counted, whole_percent};
 use crate::ui::focus;
 use crate::ui::theme::{Palette, ROW, TALL, UNIT};
 use crate::ui::widgets::{
-    Look, action_button, caption, focus_ring, form_row, paragraph, secondary, segments, tight,
-    wide_action,
+    Look, action_button, action_tooltip, caption, focus_ring, form_row, paragraph, secondary,
+    segments, tight, told_button, wide_action,
 };
 
 /// Width of the label column of this section.
@@ -195,7 +195,12 @@ fn run_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             "Stop (keep best)"
         };
         let look = (stop, Look::Primary, vec2(width - 88.0 - UNIT, TALL));
-        action_button(ui, state, Action::MatchOrStop, look, commands);
+        let tooltip = action_tooltip(Action::MatchOrStop);
+        let stop = told_button(ui, state, Action::MatchOrStop, look, &tooltip);
+        // The second of two clicks on the button that starts the match, whose place this one takes, ends nothing.
+        if stop.clicked() && !stop.double_clicked() {
+            commands.extend(Action::MatchOrStop.command(state));
+        }
         let look = ("Cancel", Look::Plain, vec2(88.0, TALL));
         action_button(ui, state, Action::CancelRun, look, commands);
     });

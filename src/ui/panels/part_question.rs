@@ -6,6 +6,7 @@ use egui::{Button, Label, Ui, vec2};
 use crate::app::{AppState, Command, MatchResult, PartCommand, PartRef};
 use crate::assess::Reason;
 use crate::role::Role;
+use crate::text::counted;
 use crate::ui::theme::ROW;
 use crate::ui::widgets::{caption, card};
 
@@ -29,7 +30,8 @@ pub fn part_question_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comman
             ""
         };
         let text = format!(
-            "{n_used} crash parts are chosen. Most like the stamped part: {title}{what_now}"
+            "The crash model has {}. Most like the stamped part: {title}{what_now}",
+            counted(n_used, "part")
         );
         ui.add(Label::new(text).wrap());
         ui.horizontal_wrapped(|ui| {
@@ -41,7 +43,11 @@ pub fn part_question_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comman
             if label.is_some_and(|label| ui.button(label).clicked()) {
                 commands.push(PartCommand::UseMostAlike.into());
             }
-            if ui.button("Use all").clicked() {
+            let all = ui.button("Match all as one");
+            if all
+                .on_hover_text("The stamped part is matched to all crash parts together")
+                .clicked()
+            {
                 commands.push(PartCommand::UseAll(Role::Crash).into());
             }
         });

@@ -169,7 +169,7 @@ pub fn row_ui(
     response
         .widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_selected, &name));
     let cell = |x: Rangef| Rect::from_x_y_ranges(x, rect.y_range());
-    let eye = eye_ui(ui, cell(columns.eye), row, &name);
+    let eye = eye_ui(ui, cell(columns.eye), row, (state, &name));
     if eye.clicked() {
         let only = ui.input(|input| input.modifiers.command);
         commands.push(eye_command(row, only).into());
@@ -406,12 +406,23 @@ fn part_color(ui: &Ui, row: &Row<'_>, state: &AppState) -> Color32 {
     }
 }
 
-/// An eye that is open or struck out.
-fn eye_ui(ui: &Ui, rect: Rect, row: &Row<'_>, name: &str) -> Response {
-    let is_visible = row.part.is_visible(row.summary.id);
-    let response = ui.interact(rect, row.widget().with("eye"), Sense::click());
+/// An eye that is open or struck out; struck out and without effect for a part that is not drawn because it is not
+/// matched.
+fn eye_ui(ui: &Ui, rect: Rect, row: &Row<'_>, (state, name): (&AppState, &str)) -> Response {
+    let is_drawn = state.is_part_used(row.at()) || state.view.display.has_unused;
+    let is_visible = is_drawn && row.part.is_visible(row.summary.id);
+    let sense = if is_drawn {
+        Sense::click()
+    } else {
+        Sense::hover()
+    };
+    let response = ui.interact(rect, row.widget().with("eye"), sense);
     eye(ui, rect, &response, (is_visible, &format!("Show {name}")));
-    response.on_hover_text("Show or hide. With Ctrl: show only this")
+    response.on_hover_text(if is_drawn {
+        "Show or hide. With Ctrl: show only this"
+    } else {
+        "Not matched and so not shown; View › Display shows unused parts"
+    })
 }
 
 /// The tick "use for match".

@@ -234,7 +234,7 @@ const TOLERANCE_HELP: &str = "Shape tolerance: how far the shapes may differ bes
                               tolerance";
 
 /// Air between the verdict and the name of the tolerance.
-const AIR: f32 = 12.0;
+const AIR: f32 = 6.0;
 
 /// The tolerance of the verdict; another one gives a new verdict. From right to left.
 fn tolerance_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mut Vec<Command>) {

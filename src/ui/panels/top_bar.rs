@@ -16,6 +16,7 @@ use crate::pipeline::outputs::{MeshOutput, Output};
 use crate::pipeline::project::is_project;
 use crate::report::{CardForm, MatrixForm};
 use crate::role::Role;
+use crate::ui::focus;
 use crate::ui::project_dialogs::recovered_menu_ui;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{caption, focus_ring};
@@ -68,7 +69,11 @@ fn menus_ui(ui: &mut Ui, state: &AppState, top: f32, commands: &mut Vec<Command>
 fn scrolling(ui: &mut Ui, top: f32, items: impl FnOnce(&mut Ui)) {
     let frame = ui.spacing().menu_margin.sum().y + 2.0 * MENU_GAP;
     let room = ui.ctx().content_rect().bottom() - top - frame;
-    ScrollArea::vertical().max_height(room).show(ui, |ui| {
+    let mut area = ScrollArea::vertical().max_height(room);
+    if focus::is_just_opened(ui, ui.scope_id().with("scrolled")) {
+        area = area.vertical_scroll_offset(0.0);
+    }
+    area.show(ui, |ui| {
         ui.set_min_width(248.0);
         items(ui);
     });

@@ -213,6 +213,8 @@ fn style(palette: &Palette, is_dark: bool) -> Style {
     spacing.button_padding = vec2(10.0, 3.0);
     spacing.interact_size = vec2(32.0, ROW);
     spacing.menu_margin = Margin::same(6);
+    // Menus are as high as what they hold, where the window is; 400 is the default.
+    spacing.default_area_size = vec2(600.0, f32::MAX);
     spacing.window_margin = Margin::same(16);
     spacing.indent = 16.0;
     spacing.icon_width = 16.0;

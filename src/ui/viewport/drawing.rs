@@ -46,6 +46,7 @@ const AXIS: f32 = 46.0;
 /// at least.
 const CLOSE: f64 = 0.2;
 const WIDTHS: f64 = 40.0;
+const CLOSING: (&str, Action, bool) = ("×", Action::ToggleSection, false);
 
 /// What is drawn.
 pub(super) struct Drawing<'a> {
@@ -105,7 +106,10 @@ impl Drawing<'_> {
                 ui.vertical(|ui| {
                     ui.horizontal(|ui| self.names(ui));
                     self.directions(ui, commands);
-                    ui.horizontal(|ui| self.plane_buttons(ui, commands));
+                    ui.horizontal(|ui| {
+                        self.plane_buttons(ui, commands);
+                        self.switch(ui, CLOSING, commands);
+                    });
                     ui.horizontal(|ui| self.zoom_buttons(ui, choices));
                     ui.scope(|ui| ui.available_rect_before_wrap()).inner
                 })
@@ -138,6 +142,8 @@ impl Drawing<'_> {
             self.plane_buttons(ui, commands);
             ui.add_space(UNIT);
             self.zoom_buttons(ui, choices);
+            ui.add_space(UNIT);
+            self.switch(ui, CLOSING, commands);
         });
         let size = vec2(ui.available_width(), ui.available_height() - 24.0);
         let seen = self.plot(ui, size, (id, choices));
@@ -186,7 +192,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// Flip, cut, close.
+    /// Flip and cut.
     fn plane_buttons(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let flip = ui
             .button("Flip")
@@ -199,18 +205,22 @@ impl Drawing<'_> {
             commands.push(InspectCommand::SetSection(section).into());
         }
         let is_clipped = self.state.inspect.section.is_clipped;
-        let buttons = [
-            ("Cut", Action::ToggleSectionClip, is_clipped),
-            ("×", Action::ToggleSection, false),
-        ];
-        for (sign, action, is_on) in buttons {
-            let row = action.row();
-            let response = ui.add(Button::new(sign).selected(is_on));
-            let name = format!("{} (section)", row.label);
-            let response = response.on_hover_text(row.tooltip).accessible_name(name);
-            if response.clicked() {
-                commands.extend(action.command(self.state));
-            }
+        self.switch(ui, ("Cut", Action::ToggleSectionClip, is_clipped), commands);
+    }
+
+    /// A button with a sign that does an action.
+    fn switch(
+        &self,
+        ui: &mut Ui,
+        (sign, action, is_on): (&str, Action, bool),
+        commands: &mut Vec<Command>,
+    ) {
+        let row = action.row();
+        let response = ui.add(Button::new(sign).selected(is_on));
+        let name = format!("{} (section)", row.label);
+        let response = response.on_hover_text(row.tooltip).accessible_name(name);
+        if response.clicked() {
+            commands.extend(action.command(self.state));
         }
     }
 

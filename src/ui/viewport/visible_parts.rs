@@ -96,7 +96,9 @@ fn has_level(state: &AppState, window: Role) -> bool {
 /// The parts of a window, crash first.
 pub(super) fn visible_parts(state: &AppState, view: &ViewFrame) -> Vec<PartInstance> {
     if let Some(free) = free_window(state, view) {
-        return beside(state, view, free);
+        let mut parts = beside(state, view, free);
+        fade(state, view, &mut parts);
+        return parts;
     }
     let mut parts = Vec::new();
     // The mapped part stands alone, its stamped part beside it, unless both are compared in one window.
@@ -154,7 +156,8 @@ pub(super) fn only_cut(
 
 /// Makes ghosts of the parts that would hide or tint the colours of another one.
 fn fade(state: &AppState, view: &ViewFrame, parts: &mut [PartInstance]) {
-    let is_shared = view.window == Role::Crash && state.view.is_moved_over;
+    let is_full = free_window(state, view) == Some(FreeWindow::FullMesh);
+    let is_shared = state.view.is_moved_over && (view.window == Role::Crash || is_full);
     let by = state.color_by(view.window);
     let colored = &state.view.display.coloring.on;
     let is_wiped = matches!(divider(state, view), Some(Divider::Wipe(_)));

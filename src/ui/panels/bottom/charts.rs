@@ -102,26 +102,26 @@ fn round_shares((low, high): (f64, f64)) -> Vec<f64> {
     ticks.find(|ticks| ticks.len() >= 2).unwrap_or_default()
 }
 
-/// Grid of a logarithmic axis: decades, and 2 and 5 between them where few decades are seen.
+/// Grid of a logarithmic axis: decades, 2 and 5 between them where few decades are seen, and every digit where less
+/// than one is.
 fn decades((low, high): (f64, f64)) -> Vec<GridMark> {
     let (first, last) = (low.floor() as i32, high.ceil() as i32);
-    let inner: &[f64] = if last - first <= 3 {
-        &[1.0, 2.0, 5.0]
-    } else {
-        &[1.0]
+    let marks = |factors: &[f64]| -> Vec<GridMark> {
+        let all = (first..=last)
+            .flat_map(|decade| factors.iter().map(move |f| f64::from(decade) + f.log10()));
+        let seen = all.filter(|value| (low..=high).contains(value));
+        // A mark is labelled when its step is wide on the screen.
+        let step_size = 1.0;
+        seen.map(|value| GridMark { value, step_size }).collect()
     };
-    let mut marks = Vec::new();
-    for decade in first..=last {
-        for factor in inner {
-            let value = f64::from(decade) + factor.log10();
-            if (low..=high).contains(&value) {
-                // A mark is labelled when its step is wide on the screen.
-                let step_size = 1.0;
-                marks.push(GridMark { value, step_size });
-            }
-        }
+    if last - first > 3 {
+        return marks(&[1.0]);
     }
-    marks
+    let few = marks(&[1.0, 2.0, 5.0]);
+    if few.len() >= 2 {
+        return few;
+    }
+    marks(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0])
 }
 
 /// Share of a narrow chart at either end where a number would reach beyond it, and least share between two.

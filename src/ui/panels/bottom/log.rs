@@ -58,7 +58,11 @@ fn table_ui(ui: &mut Ui, rows: &[LogRow], height: f32) {
         &COLUMNS[..]
     };
     let others: f32 = fixed.iter().map(|width| width + GAP).sum();
-    let room = (ui.available_width() - others - GAP).max(40.0);
+    // The bar stands beside the times and not over them.
+    let scroll = &mut ui.spacing_mut().scroll;
+    scroll.floating_allocated_width = scroll.bar_width;
+    let beside = others + GAP + scroll.bar_width;
+    let room = (ui.available_width() - beside).max(40.0);
     let fitting = Lines::that_fit(ui, height);
     let lines_of = |index: usize| Lines::of(&rows[index], opened.contains(&index), fitting);
     let heights: Vec<f32> = (0..rows.len())

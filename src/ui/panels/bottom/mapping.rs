@@ -311,7 +311,11 @@ fn show_check(
         let look = InspectCommand::LookAt {
             role: Role::Crash,
             point: result.run.target.mesh.centroids()[worst],
-            text: check.name.clone(),
+            text: match check.is_met {
+                Some(false) => check.name.clone(),
+                Some(true) => format!("{}: met, worst here", check.name),
+                None => format!("{}: worst here", check.name),
+            },
         };
         commands.push(look.into());
     }

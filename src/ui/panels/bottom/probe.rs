@@ -9,7 +9,7 @@ use crate::app::{Action, AppState, ColorBy, Command, InspectCommand, MapCommand,
 use crate::role::Role;
 use crate::text::grouped;
 use crate::ui::theme::{Palette, ROW};
-use crate::ui::widgets::{Look, action_button, caption, percent};
+use crate::ui::widgets::{Look, action_button, caption, paragraph, percent};
 
 /// One element: where its values come from, both sides in numbers and through the thickness.
 pub fn probe_ui(ui: &mut Ui, state: &AppState, is_low: bool, commands: &mut Vec<Command>) {
@@ -191,7 +191,7 @@ fn values_ui(ui: &mut Ui, state: &AppState, probe: &ProbeReport, before: impl Fn
 /// Value over T: bottom −1, top +1; points are the layers.
 fn profile_ui(ui: &mut Ui, state: &AppState, probe: &ProbeReport, size: egui::Vec2) {
     let Some(by) = probe.profile_of else {
-        caption(ui, "no quantity with layers was mapped");
+        paragraph(ui, "No quantity with layers was mapped.");
         return;
     };
     let upright = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {

@@ -23,7 +23,7 @@ pub fn sweep_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         } else {
             "No sweep yet"
         };
-        let hint = "Its times and errors stand here beside those of the paper";
+        let hint = "Its times and errors appear here, beside those of the paper";
         nothing_yet(ui, title, hint);
         return;
     };
