@@ -15,7 +15,7 @@ use super::tolerance::{ShapeTolerance, UNREMARKABLE};
 use super::trims::{self, BorderApart};
 use crate::geometry::serial::{any_float, xyz};
 use crate::geometry::{Point3, Vector3};
-use local::local_differences;
+use local::{LocalDifferences, local_differences};
 
 /// Parts that meet over less than this share of the smaller one are different parts.
 const LEAST_MET: f64 = 0.5;
@@ -304,12 +304,19 @@ impl ShapeStatement {
     /// Looks for what speaks against one shape; `mostly` is the remainder at most of the area.
     fn find_reasons(&mut self, evidence: &PoseEvidence<'_>, fit: &Fit, mostly: f64) {
         let mut reasons = Vec::new();
-        let differs = self.remainder > self.tolerance.remainder;
+        let limit = self.tolerance.remainder;
+        // What differs at most of the area is no end.
+        let local = if self.remainder > limit && mostly > limit {
+            LocalDifferences::default()
+        } else {
+            local_differences(evidence, fit, &self.tolerance)
+        };
+        self.leave_out_ends(&evidence.contacts, fit, &local);
+        let differs = self.remainder > limit;
         if self.met < LEAST_MET || differs && self.met < MOSTLY_MET {
             reasons.push(ShapeReason::HardlyMet { share: self.met });
         }
-        let limit = self.tolerance.remainder;
-        if self.remainder > limit {
+        if differs {
             let at = worst_place(&evidence.contacts, &fit.left);
             reasons.push(ShapeReason::Surface {
                 by: self.remainder,
@@ -318,7 +325,6 @@ impl ShapeStatement {
                 mostly: mostly > limit,
             });
         } else {
-            let local = local_differences(evidence, fit, &self.tolerance);
             reasons.extend(local.reason);
             self.bent_end = local.bent_end;
         }
@@ -337,6 +343,22 @@ impl ShapeStatement {
             });
         }
         self.reasons = reasons;
+    }
+
+    /// Ends that springback bends are no remainder, where nothing else is too large.
+    fn leave_out_ends(&mut self, contacts: &Contacts, fit: &Fit, local: &LocalDifferences) {
+        let limit = self.tolerance.remainder;
+        if self.remainder <= limit || local.at_ends.is_empty() {
+            return;
+        }
+        let mut left = fit.left.clone();
+        for &number in &local.at_ends {
+            left[number] = 0.0;
+        }
+        let remainder = contacts.at_share(&left, STATED_SHARE);
+        if remainder <= limit {
+            self.remainder = remainder;
+        }
     }
 
     fn border_reasons(&self, evidence: &PoseEvidence<'_>, fit: &Fit) -> Vec<ShapeReason> {

@@ -107,7 +107,8 @@ pub struct MatchArgs {
 #[command(next_help_heading = "Input")]
 pub struct InputArgs {
     /// Part of the crash model: an id, several ids (2001,2002), a title (also title:NAME), set:ID,
-    /// shell-set:ID, node-set:ID, all, or sheet (without tools). Without it, the part of a whole model that fits is found.
+    /// shell-set:ID, node-set:ID, all, or sheet (without tools).
+    /// Without it, the part of a whole model that fits is found.
     #[arg(long, value_name = "PART")]
     pub crash_part: Option<String>,
     /// Part of the stamped file, as for --crash-part, or sheet. Without it, the sheet: parts that are rigid, or have

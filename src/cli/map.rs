@@ -62,7 +62,8 @@ pub struct MapArgs {
 #[command(next_help_heading = "What is mapped")]
 pub(super) struct MapChoice {
     /// Part of the crash model: an id, several ids (2001,2002), a title (also title:NAME), set:ID,
-    /// shell-set:ID, node-set:ID, all, or sheet (without tools). Where the parts are matched first, it is found if not given.
+    /// shell-set:ID, node-set:ID, all, or sheet (without tools).
+    /// Where the parts are matched first, it is found if not given.
     #[arg(long, value_name = "PART")]
     pub(super) crash_part: Option<String>,
     /// Part of the stamped files, written as for --crash-part, or all, or sheet. Give one for all files or

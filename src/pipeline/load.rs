@@ -91,11 +91,12 @@ pub fn tools_line(file_name: &str, tools: &[u64]) -> Option<String> {
     ))
 }
 
-/// Forming changes the mean thickness by less: of one sheet the stamped part is so many times as thick as the crash part.
+/// Forming changes the mean thickness by less: of one sheet the stamped part is so many times as thick as the crash
+/// part.
 pub(super) const SAME_GAUGE: RangeInclusive<f64> = 0.75..=1.25;
 
-/// Says that the stamped part is thicker or thinner than forming explains; `None` where it is not, or where a thickness is
-/// not known.
+/// Says that the stamped part is thicker or thinner than forming explains; `None` where it is not, or where a thickness
+/// is not known.
 pub fn gauge_line(parts: PerRole<&LoadedPart>) -> Option<String> {
     let PerRole { crash, stamped } = parts.map(LoadedPart::mean_thickness);
     let ratio = stamped? / crash?;

@@ -121,7 +121,8 @@ impl Beside<'_> {
         }
         let fits_elsewhere = self.overhangs
             && candidate.is_equal_partial_fit_beside(winner, &self.distances)
-            || candidate.lies_much_closer_elsewhere_than(winner, noise);
+            || candidate.lies_much_closer_elsewhere_than(winner, noise)
+            || candidate.covers_more_than(winner, &self.distances);
         let ratio = if fits_elsewhere {
             Some(1.0)
         } else {

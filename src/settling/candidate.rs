@@ -15,6 +15,8 @@ use crate::monitor::Cancelled;
 
 /// Where so much less of the smaller part meets the other, a pose that fits as closely does not fit as well.
 pub(super) const LITTLE_LESS: f64 = 0.02;
+/// Where so much more of it meets, what meets besides is more than the elements of a border.
+const MORE_MET: f64 = 0.01;
 /// Where so much more of it meets, holes that have their counterpart besides are no accident.
 const MUCH_MORE_MET: f64 = 0.1;
 /// Where each part has a piece that the other lacks, a pose under which at least this share of the smaller part meets
@@ -233,6 +235,18 @@ impl Candidate {
             && self.met >= LEAST_SHARED.min(NEARLY_SHARED * other.met)
             && n_differences <= other.n_differences
             && (self.n_alone <= other.n_alone || is_unpierced)
+            && is_as_close(self.bend, other.bend)
+            && is_as_close(self.remainder, other.remainder)
+    }
+
+    /// Whether more of the smaller part meets the other than under another pose, such as a lug that hangs in the air
+    /// there, while as many holes have their counterpart, no more differs, and the surfaces lie as close. Holes that
+    /// lie alone here were not pierced yet.
+    pub(super) fn covers_more_than(&self, other: &Self, distances: &Distances) -> bool {
+        let is_as_close = |own: f64, other: f64| own <= distances.as_close_as(UNREMARKABLE, other);
+        self.met >= other.met + MORE_MET
+            && self.n_holes >= other.n_holes
+            && self.n_differences <= other.n_differences
             && is_as_close(self.bend, other.bend)
             && is_as_close(self.remainder, other.remainder)
     }

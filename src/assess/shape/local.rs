@@ -22,9 +22,14 @@ const BESIDE: f64 = 1.7;
 /// reaches it over more is an end, and springback bends ends most: of them as much is accepted as of the whole part.
 const LEAST_OF_END: f64 = 0.5;
 /// What springback bends turns about a line: in the mean it lies beyond the tolerance by half of what it does at its
-/// edge. A flange that lies off by more than this share of it in the mean was shifted as a whole, …
-const SHIFTED: f64 = 0.65;
-/// … which is told where its edge lies off by so many tolerances.
+/// edge, and by three quarters where it is two elements wide. A flange that lies off by more than this share of it in
+/// the mean was shifted as a whole, …
+const SHIFTED: f64 = 0.8;
+/// … if it is so many sizes of what places stand for wide, …
+const ROWS: f64 = 1.5;
+/// … beside it hardly more than this share of the tolerance is left, …
+const STILL: f64 = 0.35;
+/// … and its edge lies off by so many tolerances.
 const SURELY_OFF: f64 = 1.5;
 /// Another layer fits at a place if places of at least this share of its area do, …
 const LAYERED: f64 = 0.3;
@@ -58,6 +63,8 @@ struct Apart<'a> {
     meets: bool,
     /// Edge of the square that it stands for.
     size: f64,
+    /// Its number among the contacts that the parts are compared at, if it is one of them.
+    number: Option<usize>,
 }
 
 impl Apart<'_> {
@@ -80,12 +87,14 @@ struct Group<'a, 'b> {
 }
 
 /// A group of places that lie apart by more than a limit.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct Difference {
     by: f64,
     limit: f64,
     at: Point3,
     is_end: bool,
+    /// Those of its places that have one.
+    numbers: Vec<usize>,
 }
 
 impl Difference {
@@ -102,6 +111,7 @@ impl From<Difference> for ShapeReason {
             limit,
             at,
             is_end,
+            ..
         } = found;
         Self::Local {
             by,
@@ -122,6 +132,8 @@ pub(super) struct LocalDifferences {
     pub(super) reason: Option<ShapeReason>,
     /// The end that is bent most of those that springback explains.
     pub(super) bent_end: Option<BentEnd>,
+    /// The contacts of these ends, by their numbers.
+    pub(super) at_ends: Vec<usize>,
 }
 
 /// Groups of neighbouring places at which what neither bends nor facets explain exceeds the tolerance to one side, at
@@ -146,9 +158,11 @@ pub(super) fn local_differences(
     found.extend(search.among_far());
     let (beyond, within): (Vec<_>, Vec<_>) = found.into_iter().partition(Difference::is_beyond);
     let largest = |found: Vec<Difference>| found.into_iter().max_by(|a, b| a.by.total_cmp(&b.by));
-    let ends = within.into_iter().filter(|found| found.is_end).collect();
+    let ends: Vec<Difference> = within.into_iter().filter(|found| found.is_end).collect();
+    let numbers = ends.iter().flat_map(|end| &end.numbers);
     LocalDifferences {
         reason: largest(beyond).map(ShapeReason::from),
+        at_ends: numbers.copied().collect(),
         bent_end: largest(ends).map(|Difference { by, at, .. }| BentEnd { by, at }),
     }
 }
@@ -167,8 +181,14 @@ impl LocalSearch<'_> {
     fn among_places(&self) -> Vec<Difference> {
         let contacts = &self.evidence.contacts;
         let displaced = self.evidence.displaced();
-        let met = contacts.list.iter().zip(&self.fit.left);
-        let met = met.filter_map(|(contact, &left)| self.apart(contact, left, true));
+        let met = contacts.list.iter().zip(&self.fit.left).enumerate();
+        let met = met.filter_map(|(number, (contact, &left))| {
+            let apart = self.apart(contact, left, true)?;
+            Some(Apart {
+                number: Some(number),
+                ..apart
+            })
+        });
         let others = displaced.iter().filter_map(|contact| {
             let left = self.fit.left_at(contact, contacts);
             self.apart(contact, left, false)
@@ -222,6 +242,7 @@ impl LocalSearch<'_> {
             left,
             meets,
             size: contact.weight.sqrt(),
+            number: None,
         })
     }
 
@@ -260,8 +281,7 @@ impl LocalSearch<'_> {
     fn difference(&self, group: &Group<'_, '_>) -> Option<Difference> {
         let worst = group.worst()?;
         let outlines = || PointTree::build(outlines(self.evidence));
-        let is_end = group.is_end(self.outlines.get_or_init(outlines))
-            && !(group.is_shifted(self.tolerance.remainder) && self.is_whole(group));
+        let is_end = group.is_end(self.outlines.get_or_init(outlines)) && !self.is_shifted(group);
         let limit = if is_end {
             self.tolerance.springback
         } else {
@@ -272,17 +292,30 @@ impl LocalSearch<'_> {
             limit,
             at: worst.contact.point,
             is_end,
+            numbers: group.places.iter().filter_map(|p| p.number).collect(),
         })
     }
 
-    /// Whether no other layer of the sheet fits where a group lies off: at a hem one does, and which of both is
-    /// compared with which is chance.
-    fn is_whole(&self, group: &Group<'_, '_>) -> bool {
+    /// Whether a group was shifted as a whole, with a step beside it, and not turned about a line. No other layer of
+    /// the sheet fits there: at a hem one does, and which of both is compared with which is chance.
+    fn is_shifted(&self, group: &Group<'_, '_>) -> bool {
+        if !group.is_off_as_a_whole(self.tolerance.remainder) {
+            return false;
+        }
         let contacts = &self.evidence.contacts;
-        let fits = contacts.list.iter().zip(&self.fit.left);
-        let fits = fits.filter(|(contact, left)| !self.is_beyond(**left) && group.covers(contact));
-        let area: f64 = fits.map(|(contact, _)| contact.weight).sum();
-        area < LAYERED * group.area()
+        let (mut over, mut beside, mut left_beside) = (0.0, 0.0, 0.0);
+        for (contact, left) in contacts.list.iter().zip(&self.fit.left) {
+            if self.is_beyond(*left) {
+                continue;
+            }
+            if group.is_within(contact, OVER) {
+                over += contact.weight;
+            } else if group.is_within(contact, BESIDE) {
+                beside += contact.weight;
+                left_beside += contact.weight * left.abs();
+            }
+        }
+        over < LAYERED * group.area() && left_beside <= STILL * self.tolerance.remainder * beside
     }
 
     fn is_source_smaller(&self) -> bool {
@@ -341,12 +374,12 @@ impl<'a, 'b> Group<'a, 'b> {
                 .any(|place| place.is_beside(at, BESIDE) && is_asked(place))
     }
 
-    /// Whether a place lies over or under one of the group.
-    fn covers(&self, contact: &Contact) -> bool {
+    /// Whether a place lies within so many sizes along the sheet of one of the group.
+    fn is_within(&self, contact: &Contact, sizes: f64) -> bool {
         let at = &contact.point;
         *at >= self.low
             && *at <= self.high
-            && self.places.iter().any(|place| place.is_beside(at, OVER))
+            && self.places.iter().any(|place| place.is_beside(at, sizes))
     }
 
     /// What its places stand for.
@@ -377,13 +410,17 @@ impl<'a, 'b> Group<'a, 'b> {
         along > LEAST_OF_END * inward
     }
 
-    /// Whether it lies off as a whole, where what lies off by less than `tolerance` belongs to no group.
-    fn is_shifted(&self, tolerance: f64) -> bool {
+    /// Whether all of it lies about as far off, where what lies off by less than `tolerance` belongs to no group, and
+    /// it is wide enough to tell.
+    fn is_off_as_a_whole(&self, tolerance: f64) -> bool {
         let beyond = |place: &Apart<'_>| place.left.abs() - tolerance;
         let weighted = self.places.iter().map(|p| p.size.powi(2) * beyond(p));
         let mean = weighted.sum::<f64>() / self.area();
         let most = self.places.iter().map(|p| beyond(p)).fold(0.0, f64::max);
-        tolerance + most > SURELY_OFF * tolerance && mean > SHIFTED * most
+        let size = (self.area() / self.places.len() as f64).sqrt();
+        tolerance + most > SURELY_OFF * tolerance
+            && mean > SHIFTED * most
+            && self.width() > ROWS * size
     }
 
     /// Whether elements that cut edges short cannot explain it, because the parts do not even meet there.

@@ -186,12 +186,37 @@ fn a_pose_that_differs_and_lies_much_farther_apart_is_no_rival_of_one_that_does_
     assert!(!version.lies_much_closer_without_difference_than(&whole, 0.1));
 }
 
-#[test]
-fn a_smaller_piece_of_an_unpierced_part_is_as_likely() {
+/// Distances between parts of 900 by 500 mm.
+fn distances_of_plates() -> Distances {
     let points = [[0.0, 0.0, 0.0], [900.0, 0.0, 0.0], [0.0, 500.0, 0.0]].map(Point3::from);
     let mesh = TriMesh::new(points.to_vec(), vec![[0, 1, 2]]).unwrap();
     let plate = Surface::new(&mesh, "source").unwrap();
-    let distances = Distances::of(&plate, &plate, 1.0, &AssessSettings::default());
+    Distances::of(&plate, &plate, 1.0, &AssessSettings::default())
+}
+
+#[test]
+fn a_lug_that_meets_the_other_part_makes_a_pose_as_likely_though_its_hole_lies_alone() {
+    let distances = distances_of_plates();
+    let at = |met, n_holes, n_alone, remainder| Candidate {
+        met,
+        n_holes,
+        n_alone,
+        bend: 0.01,
+        remainder,
+        ..candidate(&[])
+    };
+    let hanging = at(0.97, 4, 0, 0.01);
+    let covers_more = |other: Candidate| other.covers_more_than(&hanging, &distances);
+    assert!(covers_more(at(1.0, 4, 1, 0.01)));
+    // Hardly more meets, a hole has lost its counterpart, or the surfaces lie farther apart.
+    assert!(!covers_more(at(0.975, 4, 1, 0.01)));
+    assert!(!covers_more(at(1.0, 3, 1, 0.01)));
+    assert!(!covers_more(at(1.0, 4, 1, 0.9)));
+}
+
+#[test]
+fn a_smaller_piece_of_an_unpierced_part_is_as_likely() {
+    let distances = distances_of_plates();
     let piece = |met, n_alone, reasons: &[ShapeReason]| Candidate {
         met,
         n_alone,
