@@ -35,7 +35,22 @@ pub struct RunningJob {
 #[derive(Debug, Clone, Default)]
 pub struct JobBoard {
     running: Option<RunningJob>,
-    waiting: Vec<(JobKey, Option<String>)>,
+    waiting: Vec<WaitingJob>,
+}
+
+#[derive(Debug, Clone)]
+struct WaitingJob {
+    key: JobKey,
+    /// The file it reads, if it reads one.
+    file: Option<String>,
+    /// It was asked to end before it begins.
+    is_cancelling: bool,
+}
+
+impl WaitingJob {
+    fn is_active(&self, key: JobKey) -> bool {
+        self.key == key && !self.is_cancelling
+    }
 }
 
 impl RunningJob {
@@ -74,13 +89,17 @@ impl JobBoard {
     /// True if a job of this key runs or waits, and was not told to go.
     pub fn is_active(&self, key: JobKey) -> bool {
         let runs = |job: &RunningJob| job.key == key && !job.is_cancelling;
-        self.running.as_ref().is_some_and(runs) || self.waiting.iter().any(|(k, _)| *k == key)
+        self.running.as_ref().is_some_and(runs) || self.waiting.iter().any(|job| job.is_active(key))
     }
 
     /// True if an output is being written or waits for it, and was not told to go.
     pub fn is_exporting(&self) -> bool {
         let runs = |job: &RunningJob| job.key.is_export() && !job.is_cancelling;
-        self.running.as_ref().is_some_and(runs) || self.waiting.iter().any(|(k, _)| k.is_export())
+        self.running.as_ref().is_some_and(runs)
+            || self
+                .waiting
+                .iter()
+                .any(|job| job.key.is_export() && !job.is_cancelling)
     }
 
     /// True if any job runs or waits.
@@ -98,12 +117,19 @@ impl JobBoard {
             _ => None,
         };
         let file = file.map(|path| file_name(path));
-        self.waiting.push((kind.key(), file));
+        self.waiting.push(WaitingJob {
+            key: kind.key(),
+            file,
+            is_cancelling: false,
+        });
     }
 
     pub(super) fn ending(&mut self, key: JobKey, is_cancelled: bool) {
         if let Some(job) = self.running.as_mut().filter(|job| job.key == key) {
             job.is_stopping |= !is_cancelled;
+            job.is_cancelling |= is_cancelled;
+        }
+        for job in self.waiting.iter_mut().filter(|job| job.key == key) {
             job.is_cancelling |= is_cancelled;
         }
     }
@@ -139,7 +165,7 @@ impl JobBoard {
 
     /// Takes a waiting job out; the file it reads.
     fn remove_waiting(&mut self, key: JobKey) -> Option<String> {
-        let index = self.waiting.iter().position(|(k, _)| *k == key)?;
-        self.waiting.remove(index).1
+        let index = self.waiting.iter().position(|job| job.key == key)?;
+        self.waiting.remove(index).file
     }
 }

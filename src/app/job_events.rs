@@ -250,11 +250,14 @@ impl AppState {
     fn take_cancelled(&mut self, key: JobKey, elapsed: Duration) {
         self.end_of(key);
         match key {
-            JobKey::Match => {
+            // A newer one is not given up with it.
+            JobKey::Match if !self.jobs.is_active(key) => {
                 let (mut work, topics) = self.split();
                 topics.matching.match_cancelled(&mut work);
             }
             JobKey::LoadFurther(revision) => self.mapping.load_cancelled(revision),
+            // The old verdict or measurement is none of what is shown; the next command asks again.
+            JobKey::Verdict | JobKey::Measure => self.matching.forget_asked(),
             _ => {}
         }
         // A job that was replaced before it began is no news.
@@ -292,11 +295,11 @@ impl AppState {
 
     fn end_of(&mut self, key: JobKey) {
         match key {
-            JobKey::Match => {
+            // One that a newer one took the place of is none of those that are waited for.
+            JobKey::Match if !self.jobs.is_active(key) => {
                 let (mut work, topics) = self.split();
                 topics.matching.match_ended(&mut work);
             }
-            // One that a newer one took the place of is none of those that are waited for.
             JobKey::Load(_) if !self.jobs.is_active(key) => self.parts.load_ended(),
             JobKey::Reselect(_) if !self.jobs.is_active(key) => self.parts.choice_ended(),
             _ => {}

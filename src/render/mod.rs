@@ -6,8 +6,8 @@
 //! ([`ViewTarget`]), again only if something changed. Where that would take long, the window asks for
 //! it in steps ([`Renderer::draw_step`]): a coarse picture while the view moves, the exact one at rest.
 //! Depth is a 32-bit float, 1 near and 0 far. Colours are blended in sRGB, which is what the target holds.
-//! Nothing beyond the default limits and features of wgpu is used, so that software drivers and OpenGL
-//! draw the same picture.
+//! Nothing beyond the default features of wgpu is used, and of its limits only larger buffers for large
+//! meshes, so that software drivers and OpenGL draw the same picture.
 
 mod coarse;
 mod context;

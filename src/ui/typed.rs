@@ -54,7 +54,11 @@ impl<'a> Takes<'a> {
     /// The same without the unit, which a second suffix would only follow.
     pub fn bare_field<'v, N: Numeric>(&self, value: &'v mut N) -> DragValue<'v> {
         let (least, most) = (*self.range.start(), *self.range.end());
-        DragValue::new(value).range(N::from_f64(least)..=N::from_f64(most))
+        let range = N::from_f64(least)..=N::from_f64(most);
+        // What is there already stays until the user changes it.
+        DragValue::new(value)
+            .range(range)
+            .clamp_existing_to_range(false)
     }
 
     /// The value that a text says, or why it says none.

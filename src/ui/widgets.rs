@@ -302,6 +302,7 @@ pub fn text_border(ui: &Ui, response: &Response) {
 
 /// An eye that is open or struck out: the switch that shows something in 3D.
 pub fn eye(ui: &Ui, rect: Rect, response: &Response, (is_open, name): (bool, &str)) {
+    let can_click = response.sense.senses_click();
     let palette = Palette::of(ui);
     focus_ring(ui, rect, response);
     let color = if is_open {
@@ -329,7 +330,8 @@ pub fn eye(ui: &Ui, rect: Rect, response: &Response, (is_open, name): (bool, &st
         let line = [c + vec2(-6.0, 5.0), c + vec2(6.0, -5.0)];
         ui.painter().line_segment(line, stroke);
     }
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, is_open, name));
+    response
+        .widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, can_click, is_open, name));
 }
 
 /// A chip: one of several choices side by side.

@@ -5,6 +5,7 @@ mod command;
 
 use std::cmp::Ordering;
 use std::sync::Arc;
+use std::sync::atomic::{self, AtomicU64};
 use std::time::Duration;
 
 pub use command::HistoryCommand;
@@ -24,6 +25,21 @@ const SERIES: Duration = Duration::from_secs(1);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct GestureId(pub u64);
 
+impl GestureId {
+    /// One that was never given before.
+    #[expect(clippy::new_without_default, reason = "each is another one")]
+    pub fn new() -> Self {
+        // Lower ones are left to name.
+        static NEXT: AtomicU64 = AtomicU64::new(1 << 32);
+        Self(NEXT.fetch_add(1, atomic::Ordering::Relaxed))
+    }
+
+    /// That of the text of a label, by the label's number.
+    pub fn of_label(id: u64) -> Self {
+        Self(1 << 63 | id)
+    }
+}
+
 #[derive(Debug, Clone)]
 struct Step {
     name: String,
@@ -42,6 +58,8 @@ pub enum StepKind {
     Selection,
     /// A match was taken over.
     Match,
+    /// Forming results were mapped.
+    Map,
     /// A level of reduction.
     Level,
     /// The pose.
@@ -70,6 +88,10 @@ impl StepKind {
             let result = document.result.as_ref();
             result.map(|result| Arc::as_ptr(&result.run.outcome))
         };
+        let [old_map, new_map] = [before, after].map(|document| {
+            let result = document.mapping.result.as_ref();
+            result.map(|result| &result.run)
+        });
         let further = |document: &Document| -> Vec<u64> {
             let all = document.mapping.further.iter();
             all.map(|further| further.revision).collect()
@@ -78,7 +100,11 @@ impl StepKind {
             Self::Files
         } else if after.result.is_some() && run(before) != run(after) {
             Self::Match
-        } else if differs(|old, new| old.loaded != new.loaded) {
+        } else if new_map.is_some() && old_map != new_map {
+            Self::Map
+        } else if differs(|old, new| old.loaded != new.loaded)
+            || before.all_meant_for != after.all_meant_for
+        {
             Self::Selection
         } else if differs(|old, new| old.level != new.level) {
             Self::Level
@@ -86,7 +112,7 @@ impl StepKind {
             Self::Pose
         } else if differs(|old, new| (&old.hidden, &old.colors) != (&new.hidden, &new.colors)) {
             Self::Display
-        } else if before.recipe != after.recipe {
+        } else if before.recipe != after.recipe || before.mapping.recipe != after.mapping.recipe {
             Self::Settings
         } else {
             Self::Other
@@ -99,6 +125,7 @@ impl StepKind {
             Self::Files => "🗁",
             Self::Selection => "☑",
             Self::Match => "🎯",
+            Self::Map => "▦",
             Self::Level => "◢",
             Self::Pose => "↔",
             Self::Display => "👁",
@@ -113,6 +140,7 @@ impl StepKind {
             Self::Files => "files",
             Self::Selection => "choice of parts or units",
             Self::Match => "match",
+            Self::Map => "mapping",
             Self::Level => "level",
             Self::Pose => "pose",
             Self::Display => "display",
@@ -144,10 +172,9 @@ pub(super) fn step_words<R>(
     match change {
         Some((setting, value)) => {
             let value = setting.shown(&value, lengths);
-            [
-                setting.label.to_owned(),
-                format!("{} {value}", setting.label),
-            ]
+            // Two tables have settings of one label.
+            let about = format!("{several}: {}", setting.field);
+            [about, format!("{} {value}", setting.label)]
         }
         None => [several.to_owned(), several.to_owned()],
     }
@@ -162,7 +189,6 @@ pub struct History {
     /// What the last series is about, and its name.
     series: Option<(String, GestureId)>,
     n_revisions: u64,
-    n_gestures: u64,
 }
 
 impl History {
@@ -170,13 +196,6 @@ impl History {
     pub(super) fn next_revision(&mut self) -> u64 {
         self.n_revisions += 1;
         self.n_revisions
-    }
-
-    /// A name for a series of commands that is one undo step.
-    pub(super) fn next_gesture(&mut self) -> GestureId {
-        self.n_gestures += 1;
-        // Panels count their own drags from 0; ours must not meet them.
-        GestureId(u64::MAX - self.n_gestures)
     }
 
     /// The series about this that the last step is part of, if that was made just before `now`, or a new one.
@@ -188,7 +207,7 @@ impl History {
         known
             .filter(|gesture| is_going_on && self.is_open(*gesture))
             .unwrap_or_else(|| {
-                let gesture = self.next_gesture();
+                let gesture = GestureId::new();
                 self.series = Some((about.to_owned(), gesture));
                 gesture
             })

@@ -85,7 +85,7 @@ impl MatchState {
                 recipe,
                 is_matched,
             } => {
-                let gesture = work.history.next_gesture();
+                let gesture = GestureId::new();
                 let has_changed =
                     self.change_recipe(work, &name, gesture, |d| d.set_remedy(*recipe));
                 self.remedy_gesture = (has_changed && is_matched).then_some(gesture);

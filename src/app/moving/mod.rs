@@ -205,7 +205,7 @@ impl MovingState {
         self.tool = Some(MoveTool {
             modal: ModalMove::new(kind),
             frame,
-            gesture: work.history.next_gesture(),
+            gesture: GestureId::new(),
         });
     }
 

@@ -85,10 +85,7 @@ impl PartsState {
             }
             PartCommand::MatchOnly(part) => return self.match_only(work, part),
             PartCommand::UseAll(role) => {
-                if role == Role::Crash {
-                    work.commit("Use all crash parts".to_owned(), Document::mean_all);
-                }
-                return self.use_parts(work, role, Selection::All);
+                return self.use_all(work, role);
             }
         }
         Vec::new()
@@ -227,6 +224,20 @@ impl PartsState {
         self.reselect(work, role, |settings| settings.choose(selection))
     }
 
+    /// That all crash parts are meant is said with the choice, or by itself where all are chosen already.
+    fn use_all(&mut self, work: &mut Work<'_>, role: Role) -> Vec<Effect> {
+        if work.is_unlocked().is_err() {
+            return Vec::new();
+        }
+        let effects = self.use_parts(work, role, Selection::All);
+        if role == Role::Crash && work.jobs.is_active(JobKey::Reselect(role)) {
+            self.are_all_meant_when_chosen = true;
+        } else if role == Role::Crash {
+            work.commit("Use all crash parts", Document::mean_all);
+        }
+        effects
+    }
+
     /// The match follows when the surface of the part is made.
     fn match_only(&mut self, work: &mut Work<'_>, part: PartRef) -> Vec<Effect> {
         if work.is_unlocked().is_err() {
@@ -273,7 +284,9 @@ impl PartsState {
         let revision = work.history.next_revision();
         let name = self.reselect_name(work, role, &part, &facts);
         let gesture = self.unit_gesture.take();
-        let are_all_meant = work.document.are_all_meant();
+        let is_crash = role == Role::Crash;
+        let are_now_meant = is_crash && std::mem::take(&mut self.are_all_meant_when_chosen);
+        let are_all_meant = are_now_meant || work.document.are_all_meant();
         work.previews.drop_all();
         work.commit_in(name, gesture, |document| {
             if is_other_pair {

@@ -9,7 +9,9 @@ use super::{FileCommand, Guess, PartsState};
 use crate::app::follow_up::FollowUp;
 use crate::app::mapping::further_dropped;
 use crate::app::work::Work;
-use crate::app::{Action, Effect, LogStep, NoticeLevel, Part, Settings, StampedPose, facts};
+use crate::app::{
+    Action, Effect, GestureId, LogStep, NoticeLevel, Part, Settings, StampedPose, facts,
+};
 use crate::formats::ReadOptions;
 use crate::jobs::{FormingEvidence, JobKey, JobKind, PartFacts, PartSource, ProjectRequest};
 use crate::pipeline::load::{LoadSettings, LoadedPart, same_parts_line, usual_selection};
@@ -147,7 +149,7 @@ impl PartsState {
         self.guess = Guess::default();
         let load = |role| self.load(work, role, source.clone(), LoadSettings::default());
         let effects = Role::ALL.into_iter().flat_map(load).collect();
-        self.together_gesture = Some(work.history.next_gesture());
+        self.together_gesture = Some(GestureId::new());
         effects
     }
 
@@ -190,7 +192,7 @@ impl PartsState {
     fn reload_together(&mut self, work: &mut Work<'_>, roles: &[Role]) -> Vec<Effect> {
         let roles = roles.iter();
         let effects = roles.flat_map(|&role| self.reload(work, role)).collect();
-        self.together_gesture = Some(work.history.next_gesture());
+        self.together_gesture = Some(GestureId::new());
         effects
     }
 

@@ -50,6 +50,8 @@ pub struct PartsState {
     pending: PerRole<Option<(u64, LoadSettings)>>,
     /// The part that is matched as soon as it is the only one of its deck.
     match_when_chosen: Option<PartRef>,
+    /// The user said with the choice under way that all parts of the crash model are meant.
+    are_all_meant_when_chosen: bool,
     guess: Guess,
     /// The parts for which the hint about units was answered.
     unit_hint_dismissed_for: Option<PerRole<u64>>,
@@ -91,6 +93,7 @@ impl PartsState {
     /// Another choice was made, or given up.
     pub(super) fn choice_ended(&mut self) {
         self.match_when_chosen = None;
+        self.are_all_meant_when_chosen = false;
     }
 
     /// What is selected may be gone after a step back, or with its file.

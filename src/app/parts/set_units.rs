@@ -3,9 +3,8 @@
 use std::sync::Arc;
 
 use super::PartsState;
-use crate::app::Effect;
 use crate::app::work::Work;
-use crate::app::{LogStep, NoticeLevel};
+use crate::app::{Effect, GestureId, LogStep, NoticeLevel};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::units::doubt_of_set_units;
 use crate::role::{PerRole, Role};
@@ -37,7 +36,7 @@ impl PartsState {
         let doubt = doubt_of_set_units(&labelled);
         let before = part.loaded.settings.units;
         let has_changed = before != units;
-        let gesture = work.history.next_gesture();
+        let gesture = GestureId::new();
         if has_changed {
             work.commit_in(name, Some(gesture), |document| {
                 if let Some(part) = document.parts.get_mut(role) {

@@ -116,7 +116,7 @@ impl ReduceState {
         let max_triangles = max_triangles.max(1);
         let is_chosen = |role: &Role| *roles.get(*role) && work.document.part(*role).is_some();
         let chosen: Vec<Role> = Role::ALL.into_iter().filter(is_chosen).collect();
-        self.together = (chosen.len() > 1).then(|| (work.history.next_gesture(), max_triangles));
+        self.together = (chosen.len() > 1).then(|| (GestureId::new(), max_triangles));
         self.is_again = PerRole::both(false);
         let chosen = chosen.into_iter();
         chosen

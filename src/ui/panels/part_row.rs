@@ -409,7 +409,7 @@ fn part_color(ui: &Ui, row: &Row<'_>, state: &AppState) -> Color32 {
 /// An eye that is open or struck out; struck out and without effect for a part that is not drawn because it is not
 /// matched.
 fn eye_ui(ui: &Ui, rect: Rect, row: &Row<'_>, (state, name): (&AppState, &str)) -> Response {
-    let is_drawn = state.is_part_used(row.at()) || state.view.display.has_unused;
+    let is_drawn = row.part.is_used(row.summary.id) || state.view.display.has_unused;
     let is_visible = is_drawn && row.part.is_visible(row.summary.id);
     let sense = if is_drawn {
         Sense::click()

@@ -293,7 +293,7 @@ impl Viewports {
                     last.clone_from(&mesh);
                 }
                 let is_same_part =
-                    |mesh: &&Arc<ShownMesh>| Arc::ptr_eq(&mesh.source.part, &source.part);
+                    |mesh: &&Arc<ShownMesh>| mesh.source.part.is_same_surface(&source.part);
                 let mesh = mesh.or_else(|| last.as_ref().filter(is_same_part).cloned())?;
                 Some((mesh, instance))
             });

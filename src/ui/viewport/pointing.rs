@@ -96,8 +96,9 @@ impl Pointing {
             return;
         }
         let is_typing = ui.ctx().egui_wants_keyboard_input() && !frame.response.has_focus();
-        let pressed = |i: &egui::InputState| i.key_pressed(egui::Key::P) && i.modifiers.is_none();
-        if let Some(hit) = hit.filter(|_| !is_typing && ui.input(pressed)) {
+        // Taken, so that the action of the key does not forget it at once.
+        let take = |i: &mut egui::InputState| i.consume_key(egui::Modifiers::NONE, egui::Key::P);
+        if let Some(hit) = hit.filter(|_| !is_typing && ui.input_mut(take)) {
             commands.push(ViewCommand::SetPivot(role, Some(hit.point)).into());
         }
     }

@@ -355,7 +355,8 @@ impl SectionStore {
         }
         let ready = |(role, number), part: &Shared<LoadedPart>| {
             let (_, cut) = self.newest(window, role, number)?;
-            let is_of_part = Arc::ptr_eq(&part.to_arc(), &cut.mesh.source.part);
+            // Its units may have been named since.
+            let is_of_part = part.is_same_surface(&cut.mesh.source.part);
             is_of_part.then(|| Arc::clone(cut))
         };
         for role in Role::ALL {

@@ -111,6 +111,9 @@ impl Tools {
         self.has_gizmo = is_wanted && (can_move || self.gizmo.is_dragging());
         if self.has_gizmo {
             self.update_gizmo(ui, frame, commands);
+        } else if self.gizmo.let_go() {
+            // The part left this window while it was held.
+            commands.push(MoveCommand::EndDrag.into());
         }
     }
 

@@ -107,7 +107,6 @@ struct Drag {
 pub struct Gizmo {
     hovered: Option<Handle>,
     drag: Option<Drag>,
-    n_drags: u64,
 }
 
 impl Gizmo {
@@ -124,6 +123,12 @@ impl Gizmo {
     /// True while a handle is held; the camera then leaves the left button alone.
     pub fn is_dragging(&self) -> bool {
         self.drag.is_some()
+    }
+
+    /// Ends a drag where the part was taken from under it; true if there was one.
+    pub fn let_go(&mut self) -> bool {
+        self.hovered = None;
+        self.drag.take().is_some()
     }
 
     /// Takes one frame of the pointer.
@@ -146,10 +151,9 @@ impl Gizmo {
         let Some(handle) = self.hovered else {
             return;
         };
-        self.n_drags += 1;
         self.drag = Some(Drag {
             handle,
-            gesture: GestureId(self.n_drags),
+            gesture: GestureId::new(),
             frame: *view.frame,
             axes: view.axes,
             last: at,

@@ -276,7 +276,7 @@ fn escape_takes_the_drag_back() {
         is_abandoned: true,
         ..PointerInput::default()
     });
-    assert_eq!(end, Some(GizmoDelta::Abandon(GestureId(1))));
+    assert!(matches!(end, Some(GizmoDelta::Abandon(_))), "{end:?}");
 }
 
 #[test]

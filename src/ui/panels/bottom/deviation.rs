@@ -392,7 +392,7 @@ fn label_ui(
             let response = text_field(ui, field).accessible_name(format!("Name of {node}"));
             if response.changed() {
                 // One step for one stay in the field.
-                let gesture = GestureId(label.id << 1 | 1 << 62);
+                let gesture = GestureId::of_label(label.id);
                 let id = label.id;
                 commands.push(InspectCommand::Rename { id, name, gesture }.into());
             }

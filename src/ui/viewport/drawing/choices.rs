@@ -65,6 +65,8 @@ impl Choices {
         let is_new = self.drawn.replace(drawn) != Some(drawn);
         if is_new {
             self.is_zoomed = false;
+            // Points of another plane are none of this one.
+            self.picked.clear();
         }
         let first = match lie {
             Lie::Apart(_) => Some(Zoom::Part(Role::Crash)),

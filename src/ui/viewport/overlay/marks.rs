@@ -20,6 +20,8 @@ use crate::ui::widgets::signed;
 const ABOVE_BAR: f32 = 30.0;
 /// Most rows of a readout.
 const READOUT_ROWS: usize = 3;
+/// Less room beside a legend breaks its words.
+const LEAST_ROOM: f32 = 170.0;
 /// Longest scale bar.
 const MAX_BAR: f64 = 150.0;
 
@@ -183,7 +185,13 @@ fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32, legend: Option<Rec
     if let Some(legend) = legend.filter(is_right)
         && ground.expand(4.0).intersects(legend)
     {
-        (galley, ground) = within(legend.left());
+        if legend.left() - left < LEAST_ROOM {
+            // Above a legend that leaves no room beside it.
+            let up = legend.top() - 6.0 - ground.bottom();
+            ground = ground.translate(vec2(0.0, up));
+        } else {
+            (galley, ground) = within(legend.left());
+        }
     }
     painter.rect_filled(ground, CornerRadius::same(5), over.frame.look.plate);
     painter.galley(ground.min + vec2(7.0, 4.0), galley, over.frame.look.text);

@@ -44,7 +44,7 @@ pub(super) fn field(
     let number = if scale.min < 0.0 { signed } else { length };
     ui.horizontal(|ui| {
         ui.add_space(left);
-        let takes = Takes::number(limit.name(), "", -1e9..=1e9);
+        let takes = Takes::number(limit.name(), "", -1e15..=1e15);
         let field = takes
             .field(&mut value)
             .speed(0.01 * scale.max.abs().max(scale.min.abs()))
