@@ -2,6 +2,7 @@
 
 use crate::app::{Axis, AxisFrame, MoveFrame, rotation_about, translation_along};
 use crate::geometry::{Similarity, Vector3};
+use crate::text::{length, trimmed};
 
 /// Longest value that is taken from the keys.
 const MAX_TYPED: usize = 24;
@@ -262,7 +263,25 @@ impl ModalMove {
     }
 }
 
-/// A number for a name: at most three decimals, no trailing zeros, no "-0".
+/// A number for a name: at most three decimals, no trailing zeros, no "-0"; of what is smaller, such as a thickness in
+/// metres, three digits.
 pub fn short_number(value: f64) -> String {
-    crate::text::trimmed(value, 3)
+    let is_small = value != 0.0 && value.abs() < 0.01;
+    if is_small {
+        length(value)
+    } else {
+        trimmed(value, 3)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_for_a_name_is_short_and_not_nothing() {
+        let numbers = [12.5, -3.0, 0.25, 0.0, 0.0004];
+        let texts = numbers.map(short_number);
+        assert_eq!(texts, ["12.5", "−3", "0.25", "0", "0.000400"]);
+    }
 }
