@@ -2470,7 +2470,7 @@ fn that_all_parts_are_meant_is_a_step() {
     window.apply(PartCommand::UseAll(Role::Crash));
     assert_eq!(
         window.state.history.undo_name(),
-        Some("Use all crash parts")
+        Some("Match all crash parts as one")
     );
     assert!(window.state.document.all_meant_for.is_some());
     window.act(Action::Undo);

@@ -233,7 +233,7 @@ impl PartsState {
         if role == Role::Crash && work.jobs.is_active(JobKey::Reselect(role)) {
             self.are_all_meant_when_chosen = true;
         } else if role == Role::Crash {
-            work.commit("Use all crash parts", Document::mean_all);
+            work.commit("Match all crash parts as one", Document::mean_all);
         }
         effects
     }
