@@ -1,5 +1,7 @@
 //! Section 3: first poses, the match, what came out.
 
+use std::time::Duration;
+
 use egui::{Button, ComboBox, ProgressBar, RichText, Ui, vec2};
 
 use super::section::{is_unfolded, section_ui};
@@ -22,6 +24,8 @@ use crate::ui::widgets::{
 
 /// Width of the label column of this section.
 const LABEL: f32 = 56.0;
+/// A match is not stopped by a click so soon after its start: two clicks may come far apart where frames are slow.
+const NO_STOP_YET: Duration = Duration::from_millis(700);
 
 /// Draws section 3.
 pub fn matching_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -198,7 +202,9 @@ fn run_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let tooltip = action_tooltip(Action::MatchOrStop);
         let stop = told_button(ui, state, Action::MatchOrStop, look, &tooltip);
         // The second of two clicks on the button that starts the match, whose place this one takes, ends nothing.
-        if stop.clicked() && !stop.double_clicked() {
+        let begun = state.jobs.running().map(|job| job.since);
+        let is_new = begun.is_some_and(|at| state.log.now.saturating_sub(at) < NO_STOP_YET);
+        if stop.clicked() && !is_new && !stop.double_clicked() {
             commands.extend(Action::MatchOrStop.command(state));
         }
         let look = ("Cancel", Look::Plain, vec2(88.0, TALL));
