@@ -9,6 +9,7 @@ use super::borders::{Borders, HolePair, LEAST_PAIRED, PairKind};
 use super::contact::{Contacts, STATED_SHARE};
 use super::evidence::PoseEvidence;
 use super::fit::{Fit, HoleLeft};
+use super::outline_pieces::OutlinePieces;
 use super::outline_shift::outline_aside_of_holes;
 use super::stretch::{PartAxis, Stretch, stretch};
 use super::tolerance::{ShapeTolerance, UNREMARKABLE};
@@ -72,6 +73,9 @@ pub struct BorderFit {
     /// accepted: a single end that was cut elsewhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub apart: Option<BorderApart>,
+    /// Pieces of sheet at the outlines that only one part has, if there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pieces: Option<OutlinePieces>,
     /// Holes that both parts have.
     pub n_holes: usize,
     /// Largest distance of a hole from its counterpart, likewise, with the difference of the radii.
@@ -186,6 +190,11 @@ pub enum ShapeReason {
         #[serde(with = "xyz")]
         at: Point3,
     },
+    /// Each part has pieces of sheet at its outline that the other lacks: a lug or a notch lies elsewhere.
+    Outlines {
+        /// The pieces.
+        pieces: OutlinePieces,
+    },
 }
 
 /// Whether a part of which this share meets the other one lies beyond its borders otherwise, with this share: hardly
@@ -281,6 +290,24 @@ impl ShapeStatement {
         self.reasons.clear();
         self.kind = self.judge(noise, self.remainder);
         self
+    }
+
+    /// Looks for pieces of sheet at the outlines that only one part has. Where just one part has them, it was trimmed
+    /// later; where both have, they are two versions. O(places along the outlines · log triangles).
+    pub(super) fn compare_outlines(&mut self, evidence: &PoseEvidence<'_>) {
+        if self.met < MOSTLY_MET {
+            return;
+        }
+        // A bend of a curved part moves borders within the sheet too.
+        let limit = evidence
+            .borders
+            .limit(&self.tolerance)
+            .hypot(self.springback);
+        self.borders.pieces = OutlinePieces::of(evidence, limit);
+        if let Some(pieces) = self.borders.pieces.filter(OutlinePieces::are_of_both) {
+            self.reasons.push(ShapeReason::Outlines { pieces });
+            self.kind = self.kind.max(ShapeKind::OtherVersion);
+        }
     }
 
     /// The statement about parts that do not meet at all.
@@ -426,6 +453,7 @@ fn border_fit(borders: &Borders, fit: &Fit, tolerance: &ShapeTolerance) -> Borde
         together: borders.share_within(&fit.borders, TOGETHER * borders.limit(tolerance)),
         other_trim: None,
         apart: trims::farthest_apart(borders, &fit.borders, borders.limit(tolerance)),
+        pieces: None,
         n_holes: borders.holes.len(),
         worst_hole: fit.holes.iter().map(HoleLeft::size).fold(0.0, f64::max),
         only_source: borders.missing[0].len(),

@@ -64,6 +64,9 @@ pub(super) fn statements(
         met.evidence.near = asked.near;
     }
     let mut shape = compared.shape(settings);
+    if let Some(met) = &compared.met {
+        shape.compare_outlines(&met.evidence);
+    }
     if let Some(met) = &compared.met
         && shape.met < OVERHANGS
     {

@@ -430,7 +430,7 @@ impl Evidence {
     fn of(reason: &ShapeReason) -> Self {
         match reason {
             ShapeReason::Bent { .. } => Self::Nothing,
-            ShapeReason::Holes { .. } => Self::ClearDifference,
+            ShapeReason::Holes { .. } | ShapeReason::Outlines { .. } => Self::ClearDifference,
             ShapeReason::Surface { by, limit, .. }
             | ShapeReason::Local { by, limit, .. }
             | ShapeReason::Borders { by, limit, .. }

@@ -2,6 +2,7 @@
 
 mod beads;
 mod flanges;
+mod outlines;
 
 use std::f64::consts::PI;
 

@@ -63,11 +63,17 @@ impl Fit {
         order.then(self.rmse.total_cmp(&other.rmse)).is_lt()
     }
 
-    /// True if the distances do not tell which of both is right, nor do the holes. A verdict does not either
-    /// where the other part lies clearly closer: something to look at, such as a coarse hole, is no twin.
+    /// True if the distances do not tell which of both is right, nor do the holes, and it is covered hardly less. A
+    /// verdict does not either where the other part lies clearly closer: something to look at, such as a coarse hole,
+    /// is no twin.
     pub(super) fn is_as_good_as(&self, best: &Self) -> bool {
         let is_judged_alike = self.verdict == best.verdict || AS_CLOSE * self.rmse <= best.rmse;
-        is_judged_alike && self.n_holes_apart <= best.n_holes_apart && self.is_as_close_as(best)
+        // Distances are those of what overlaps.
+        let is_covered = self.covered >= best.covered - MORE_COVERED;
+        is_judged_alike
+            && is_covered
+            && self.n_holes_apart <= best.n_holes_apart
+            && self.is_as_close_as(best)
     }
 
     /// Parts whose likeness is less than so many times that of this one need not be tried; `None` where any may be
@@ -157,6 +163,11 @@ mod tests {
         assert!(!without_holes.is_as_good_as(&own));
         let copy = fit(Verdict::Good, 0, 0.46);
         assert!(own.is_better_than(&copy) && copy.is_as_good_as(&own));
+        let in_part = Fit {
+            covered: 0.6,
+            ..copy
+        };
+        assert!(!in_part.is_as_good_as(&own));
         let other_hand = Fit {
             is_mirrored: true,
             ..fit(Verdict::Good, 0, 0.44)
