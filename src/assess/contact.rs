@@ -171,11 +171,7 @@ impl<'a> ContactSearch<'a> {
                 positions[vertex]
             })
         });
-        let areas = sides.data.vertex_areas();
-        let nodes = asked.map(|vertex| WeightedNode {
-            vertex: vertex as u32,
-            area: areas[vertex],
-        });
+        let nodes = asked.map(|vertex| WeightedNode::of(sides.data, vertex as u32));
         let list = nodes.filter_map(|node| sides.contact(node, self.reach, None, &mut None));
         list.collect()
     }

@@ -67,15 +67,15 @@ impl PoseEvidence<'_> {
         [true, false].map(|of_source| {
             let near = &self.near[usize::from(!of_source)];
             let data = if of_source { self.source } else { self.target };
-            let areas = data.vertex_areas();
             let far = near.nodes.par_iter().filter(|near| near.distance >= least);
             let asked = far.filter(|near| {
                 let (point, normal, gap) = self.roughly(near, of_source);
                 is_asked(&point, &normal, gap)
             });
-            let asked = asked.map(|place| WeightedNode {
-                vertex: place.node,
-                area: areas[place.node as usize] * near.per_node as f64,
+            let asked = asked.map(|place| {
+                let mut node = WeightedNode::of(data, place.node);
+                node.area *= near.per_node as f64;
+                node
             });
             let asked: Vec<WeightedNode> = asked.collect();
             if asked.len() > most {

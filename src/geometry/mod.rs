@@ -51,6 +51,21 @@ pub type Pose = nalgebra::Isometry3<f64>;
 /// A rotation as a unit quaternion.
 pub type Rotation = nalgebra::UnitQuaternion<f64>;
 
+/// A right-handed frame whose third axis is a unit vector and whose first one points as far as it may in another
+/// direction, or in any if both are parallel.
+pub(crate) fn frame_about(z: &Vector3, towards: &Vector3) -> Matrix3 {
+    let x = towards - z * towards.dot(z);
+    let x = x.try_normalize(1e-6).unwrap_or_else(|| {
+        let other = if z.x.abs() < 0.7 {
+            Vector3::x()
+        } else {
+            Vector3::y()
+        };
+        (other - z * other.dot(z)).normalize()
+    });
+    Matrix3::from_columns(&[x, z.cross(&x), *z])
+}
+
 /// A unit vector perpendicular to a unit vector: across the axis that this is farthest from.
 pub(crate) fn any_perpendicular(unit: &Vector3) -> Vector3 {
     let mut axis = Vector3::zeros();

@@ -15,6 +15,16 @@ pub(crate) struct WeightedNode {
     pub(crate) area: f64,
 }
 
+impl WeightedNode {
+    /// A vertex that stands for its own area alone.
+    pub(crate) fn of(surface: &Surface, vertex: u32) -> Self {
+        Self {
+            vertex,
+            area: surface.vertex_areas()[vertex as usize],
+        }
+    }
+}
+
 /// The choices of nodes that were asked of a surface so far, and the order that they are made along.
 #[derive(Debug, Default)]
 pub(super) struct EvenChoices {
@@ -45,8 +55,8 @@ impl EvenChoices {
             return Ok(known.clone());
         }
         let choice: Arc<[WeightedNode]> = if n == areas.len() {
-            let all = (0..).zip(areas);
-            all.map(|(vertex, &area)| WeightedNode { vertex, area })
+            let all = 0..n as u32;
+            all.map(|vertex| WeightedNode::of(surface, vertex))
                 .collect()
         } else {
             evenly(areas, self.z_order(surface, monitor)?, n).into()
@@ -85,9 +95,8 @@ fn evenly(areas: &[f64], order: &[u32], n: usize) -> Vec<WeightedNode> {
 
 /// All vertices of the surface with the area they stand for.
 pub(crate) fn all_nodes(surface: &Surface) -> Vec<Sample> {
-    let areas = (0..).zip(surface.vertex_areas());
-    areas
-        .map(|(vertex, &area)| sample(surface, WeightedNode { vertex, area }))
+    (0..surface.mesh().n_vertices() as u32)
+        .map(|vertex| sample(surface, WeightedNode::of(surface, vertex)))
         .collect()
 }
 

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::correspondence::{Correspondence, Sample, correspond, correspond_on_grid};
-use super::metric::{StepRules, step};
+use super::metric::step;
 use super::select::{Selected, select};
 use super::stages::StageRules;
 use super::termination::Termination;
@@ -262,11 +262,7 @@ fn iterate(
         return Ok(());
     };
     record(run, &selected, input, monitor);
-    let step_rules = StepRules {
-        damping: run.damping,
-        ..rules.step
-    };
-    let increment = step(&run.pairs, &selected.kept, &step_rules);
+    let increment = step(&run.pairs, &selected.kept, &rules.step, run.damping);
     run.kept = selected.kept;
     if let Some(least) = rules.least_reach {
         run.reach = (KEPT_REACH * run.farthest_kept()).max(least);

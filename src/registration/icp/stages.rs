@@ -284,7 +284,6 @@ pub(crate) fn stage_rules(
             } else {
                 settings.motion
             },
-            damping: 0.0,
             max_translation: MAX_STEP * data.measures().diagonal.max(model.measures().diagonal),
             likely_motion: match settings.selection {
                 // What remains of the residuals is that of points without counterpart.

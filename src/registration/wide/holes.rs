@@ -8,8 +8,8 @@ use rayon::prelude::*;
 
 use super::cloud::{Cloud, Motion32};
 use super::rounds::First;
-use super::seeds::{aligned, frame, matrix};
-use crate::geometry::{Matrix3, Point3, Rotation, Vector3};
+use super::seeds::{aligned, matrix};
+use crate::geometry::{Matrix3, Point3, Rotation, Vector3, frame_about};
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::surface::Surface;
 use crate::search::{FeatureGrid, PointTree};
@@ -220,8 +220,8 @@ impl Alike {
                 let angle = TAU * turn as f64 / N_TURNS as f64;
                 let turn = matrix(&Rotation::from_axis_angle(&Vector3::z_axis(), angle));
                 let normal = if flipped { -only.normal } else { only.normal };
-                let own = frame(&normal, &Vector3::x());
-                let turn = frame(&hole.normal, &Vector3::x()) * turn * own.transpose();
+                let own = frame_about(&normal, &Vector3::x());
+                let turn = frame_about(&hole.normal, &Vector3::x()) * turn * own.transpose();
                 found.push(First {
                     flipped,
                     motion: aligned(&turn, &only.center, &hole.center),
@@ -282,7 +282,7 @@ impl Alike {
                 b.normal.dot(&along),
                 a.normal.dot(&b.normal),
             ],
-            frame: frame(&along, &normal),
+            frame: frame_about(&along, &normal),
             holes,
         })
     }

@@ -5,7 +5,7 @@ use nalgebra::SymmetricEigen;
 use super::BLOCK;
 use super::cloud::{Cloud, Motion32};
 use super::rounds::First;
-use crate::geometry::{Matrix3, Rotation, Vector3};
+use crate::geometry::{Matrix3, Rotation, Vector3, frame_about};
 use crate::registration::starts::{StartKind, super_fibonacci};
 use crate::registration::surface::Surface;
 use crate::search::FeatureGrid;
@@ -238,24 +238,9 @@ impl Patch {
 
     /// A right-handed frame whose third axis is the normal, or its opposite.
     fn frame(&self, flipped: bool) -> Matrix3 {
-        frame(
+        frame_about(
             &if flipped { -self.normal } else { self.normal },
             &self.longest,
         )
     }
-}
-
-/// A right-handed frame whose third axis is a unit vector and whose first one points as far as it may in another
-/// direction, or in any if both are parallel.
-pub(super) fn frame(z: &Vector3, towards: &Vector3) -> Matrix3 {
-    let x = towards - z * towards.dot(z);
-    let x = x.try_normalize(1e-6).unwrap_or_else(|| {
-        let other = if z.x.abs() < 0.7 {
-            Vector3::x()
-        } else {
-            Vector3::y()
-        };
-        (other - z * other.dot(z)).normalize()
-    });
-    Matrix3::from_columns(&[x, z.cross(&x), *z])
 }

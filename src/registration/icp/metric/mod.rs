@@ -28,8 +28,6 @@ pub enum Metric {
 pub(crate) struct StepRules {
     pub(crate) metric: Metric,
     pub(crate) motion: Motion,
-    /// Shortens a step, after one that made things worse: by 1 / (1 + damping).
-    pub(crate) damping: f64,
     /// Longest translation of one step.
     pub(crate) max_translation: f64,
     /// How far a step is likely to move the data; infinite where steps are to be taken whole.
@@ -37,9 +35,9 @@ pub(crate) struct StepRules {
 }
 
 impl StepRules {
-    fn solve(&self) -> SolveRules {
+    fn solve(&self, damping: f64) -> SolveRules {
         SolveRules {
-            damping: self.damping,
+            damping,
             likely_motion: self.likely_motion,
             with_scale: self.motion == Motion::Similarity,
         }
@@ -49,11 +47,13 @@ impl StepRules {
 /// Largest rotation of one step.
 const MAX_ROTATION_DEG: f64 = 30.0;
 
-/// The motion to put before the current pose, `None` where the pairs fix nothing.
+/// The motion to put before the current pose, `None` where the pairs fix nothing. After a step that made things worse,
+/// `damping` shortens the next one by 1 / (1 + damping), but for that of the closed form.
 pub(crate) fn step(
     pairs: &[Correspondence],
     kept: &[u32],
     rules: &StepRules,
+    damping: f64,
 ) -> Option<Similarity> {
     match rules.metric {
         Metric::PointToPoint => {
@@ -64,7 +64,7 @@ pub(crate) fn step(
             let fit = fit_pairs(pairs, rules.motion).ok()?;
             Some(fit.target_from_source)
         }
-        Metric::PointToPlane => point_to_plane::step(pairs, kept, rules),
-        Metric::Symmetric => symmetric::step(pairs, kept, rules),
+        Metric::PointToPlane => point_to_plane::step(pairs, kept, rules, damping),
+        Metric::Symmetric => symmetric::step(pairs, kept, rules, damping),
     }
 }

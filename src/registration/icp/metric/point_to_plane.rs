@@ -11,6 +11,7 @@ pub(super) fn step(
     pairs: &[Correspondence],
     kept: &[u32],
     rules: &StepRules,
+    damping: f64,
 ) -> Option<Similarity> {
     let kept = kept.iter().map(|&i| &pairs[i as usize]);
     let (center, radius) = center_and_radius(kept.clone().map(|c| (&c.moved, c.weight)))?;
@@ -26,7 +27,7 @@ pub(super) fn step(
         };
         equations.add(&row, residual, pair.weight);
     }
-    let solution = equations.solve(&rules.solve())?;
+    let solution = equations.solve(&rules.solve(damping))?;
     let (turn, shift) = limited(solution.rotation, solution.translation, rules);
     let rotation = *Rotation::new(turn).to_rotation_matrix().matrix();
     let scale = solution.scale.clamp(-0.2, 0.2).exp();

@@ -11,6 +11,7 @@ pub(super) fn step(
     pairs: &[Correspondence],
     kept: &[u32],
     rules: &StepRules,
+    damping: f64,
 ) -> Option<Similarity> {
     let kept = kept.iter().map(|&i| &pairs[i as usize]);
     let (moved_center, radius) = center_and_radius(kept.clone().map(|c| (&c.moved, c.weight)))?;
@@ -34,7 +35,7 @@ pub(super) fn step(
         };
         equations.add(&row, residual, pair.weight);
     }
-    let solution = equations.solve(&rules.solve())?;
+    let solution = equations.solve(&rules.solve(damping))?;
     let tangent = solution.rotation.norm();
     let half_angle = tangent.atan();
     let half_limit = MAX_ROTATION_DEG.to_radians() / 2.0;

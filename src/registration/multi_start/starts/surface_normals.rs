@@ -1,7 +1,7 @@
 //! First poses that align the mean normals of both parts and rotate in steps about them.
 
 use super::{Start, StartKind, rotation_about};
-use crate::geometry::{Matrix3, Point3, Rotation, Similarity, Vector3, any_perpendicular};
+use crate::geometry::{Matrix3, Point3, Rotation, Similarity, Vector3, frame_about};
 use crate::registration::surface::{Measures, Surface};
 
 /// Lays the source's area centroid on the target's and its mean normal on the target's (reversed
@@ -22,11 +22,11 @@ pub fn align_surface_normals(
 }
 
 /// A centre with a right-handed frame whose third axis is the mean normal.
-pub(super) struct Place {
-    pub(super) center: Point3,
-    pub(super) normal: Vector3,
+struct Place {
+    center: Point3,
+    normal: Vector3,
     /// The longest direction; need not be perpendicular to the normal.
-    pub(super) longest: Vector3,
+    longest: Vector3,
 }
 
 impl Place {
@@ -49,16 +49,14 @@ impl Place {
     }
 
     fn frame(&self, flipped: bool) -> Matrix3 {
-        let z = if flipped { -self.normal } else { self.normal };
-        let x = self.longest - z * self.longest.dot(&z);
-        let x = x
-            .try_normalize(1e-9)
-            .unwrap_or_else(|| any_perpendicular(&z));
-        Matrix3::from_columns(&[x, z.cross(&x), z])
+        frame_about(
+            &if flipped { -self.normal } else { self.normal },
+            &self.longest,
+        )
     }
 }
 
-pub(super) fn align(from: &Place, to: &Place, flipped: bool, angle: f64) -> Similarity {
+fn align(from: &Place, to: &Place, flipped: bool, angle: f64) -> Similarity {
     let turn = Rotation::from_axis_angle(&Vector3::z_axis(), angle);
     let turn = *turn.to_rotation_matrix().matrix();
     let matrix = to.frame(false) * turn * from.frame(flipped).transpose();
