@@ -18,13 +18,14 @@ pub(super) fn corner_thickness(
     monitor: &Monitor,
 ) -> Result<Vec<[f64; 4]>, Cancelled> {
     let mesh = &target.mesh;
-    let neighbours = mesh.links(monitor)?.neighbours;
+    let links = mesh.links(monitor)?;
+    let neighbours = &links.neighbours;
     let of_chunk = |chunk: usize| -> Result<Vec<[f64; 4]>, Cancelled> {
         monitor.check()?;
         let elements = chunk * CHUNK..((chunk + 1) * CHUNK).min(mesh.len());
         let mut patch = Patch::default();
         let numbers = elements.clone().map(|element| element as u32);
-        patch.load(numbers, mesh, &neighbours, thickness);
+        patch.load(numbers, mesh, neighbours, thickness);
         let Fields {
             patch, thickness, ..
         } = Fields::of_thickness(patch, thickness);

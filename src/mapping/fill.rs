@@ -22,7 +22,8 @@ pub(super) fn fill(
     if options.fill_rings == 0 || !(fills_thickness || fills_states) {
         return Ok(());
     }
-    let neighbours = target.mesh.links(monitor)?.neighbours;
+    let links = target.mesh.links(monitor)?;
+    let neighbours = &links.neighbours;
     let own = mapped.states.as_ref().filter(|_| fills_states);
     let own = own.map(|states| {
         map_chunks(target.mesh.len(), monitor, |element| {

@@ -221,19 +221,8 @@ fn merged_corners(
     })
 }
 
-/// For each element whether its corners go the other way round than those of most of its sheet, by area; empty where
-/// all go alike. O(elements).
-pub(super) fn reversed_elements(
-    mesh: &ShellMesh,
-    monitor: &Monitor,
-) -> Result<Vec<bool>, Cancelled> {
-    let merged = mesh.merged_nodes(monitor)?;
-    let corners_of = merged_corners(mesh, &merged, monitor)?;
-    let links = Links::before_cracks(mesh, n_merged(&merged), &corners_of, monitor)?;
-    Ok(links.neighbours.is_reversed)
-}
-
-/// The same from the neighbours of all elements. A sheet goes on over edges that two elements of one part share and no
+/// For each element whether its corners go the other way round than those of most of its sheet, by area, from the
+/// neighbours of all elements. A sheet goes on over edges that two elements of one part share and no
 /// third: beyond others no side is the same.
 fn reversed_in_sheet(
     mesh: &ShellMesh,
@@ -436,6 +425,12 @@ impl Neighbours {
     /// True if any two elements that share an edge have their normals on opposite sides.
     pub(super) fn any_opposed(&self) -> bool {
         !self.is_reversed.is_empty()
+    }
+
+    /// For each element whether its corners go the other way round than those of most of its sheet, by area; empty
+    /// where all go alike.
+    pub(super) fn reversed(&self) -> &[bool] {
+        &self.is_reversed
     }
 
     /// True if two elements of one sheet have their normals on opposite sides of it. What a fold does to normals

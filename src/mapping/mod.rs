@@ -297,7 +297,7 @@ fn reversed_targets(
     if options.normal_sense != NormalSense::Auto || !is_signed {
         return Ok(Vec::new());
     }
-    links::reversed_elements(&target.mesh, monitor)
+    Ok(target.mesh.links(monitor)?.neighbours.reversed().to_vec())
 }
 
 fn map_chunks(

@@ -1,7 +1,9 @@
 //! Shell elements as the mapping needs them: corners, normals, sizes, neighbours, and the same
 //! sheet as triangles.
 
-use super::links::{Links, Neighbours};
+use std::sync::{Arc, OnceLock};
+
+use super::links::Links;
 use crate::geometry::chunks::for_chunks;
 use crate::geometry::{MeshError, Point3, Similarity, TriMesh, Vector3, first_at_place};
 use crate::monitor::{Cancelled, Monitor};
@@ -15,6 +17,8 @@ pub struct ShellMesh {
     centroids: Vec<Point3>,
     normals: Vec<Vector3>,
     areas: Vec<f64>,
+    /// Made when they are first asked for: several steps of a mapping need them.
+    links: OnceLock<Arc<Links>>,
 }
 
 impl ShellMesh {
@@ -39,6 +43,7 @@ impl ShellMesh {
             centroids: Vec::new(),
             normals: Vec::new(),
             areas: Vec::new(),
+            links: OnceLock::new(),
         };
         let measures = (0..mesh.len()).map(|element| mesh.measure(element));
         let (centroids, (normals, areas)) = measures.unzip();
@@ -74,6 +79,8 @@ impl ShellMesh {
                 .collect(),
             normals: normals.map(|n| target_from_source.rotate(n)).collect(),
             areas: self.areas.iter().map(|area| area * area_factor).collect(),
+            // Nodes that differ may lie at one place once they are moved.
+            links: OnceLock::new(),
         }
     }
 
@@ -208,15 +215,13 @@ impl ShellMesh {
         Ok(merged)
     }
 
-    /// The elements that share at least one merged node with each element, without itself.
-    pub fn neighbours(&self) -> Neighbours {
-        let links = self.links(&Monitor::silent());
-        links.expect("nobody cancels a silent monitor").neighbours
-    }
-
-    /// Neighbours and border of the sheet, through doubled nodes.
-    pub fn links(&self, monitor: &Monitor) -> Result<Links, Cancelled> {
-        Links::of(self, monitor)
+    /// Neighbours and border of the sheet, through doubled nodes. O(elements) the first time, O(1) then.
+    pub fn links(&self, monitor: &Monitor) -> Result<Arc<Links>, Cancelled> {
+        if let Some(links) = self.links.get() {
+            return Ok(Arc::clone(links));
+        }
+        let links = Arc::new(Links::of(self, monitor)?);
+        Ok(Arc::clone(self.links.get_or_init(|| links)))
     }
 }
 

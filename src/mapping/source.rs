@@ -1,6 +1,7 @@
 //! The stamped part made ready: moved once, resampled to the target's layers, with its fields.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::field::{Field, Fields};
 use super::history::SourceHistory;
@@ -88,7 +89,7 @@ pub(super) struct PreparedSource<'a> {
     pub mesh: ShellMesh,
     bvh: Bvh,
     triangle_element: Vec<u32>,
-    links: Links,
+    links: Arc<Links>,
     /// Which sheet of one gauge each element belongs to.
     pub gauge: Vec<u32>,
     is_uneven: Vec<bool>,

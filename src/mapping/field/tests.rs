@@ -4,6 +4,7 @@ use super::*;
 use crate::geometry::Point3;
 use crate::mapping::layered::Layered;
 use crate::mapping::shells::ShellMesh;
+use crate::monitor::Monitor;
 
 /// n × n unit squares in the plane z = 0, their inner nodes moved a little.
 fn sheet(n: u32) -> ShellMesh {
@@ -37,7 +38,8 @@ fn scalars(mesh: &ShellMesh, f: impl Fn(&Point3) -> f64) -> Vec<f64> {
 /// The field of one number around every element; slots are element numbers.
 fn fitted(mesh: &ShellMesh, numbers: &[f64], gauge: &[f64]) -> Fields {
     let mut patch = Patch::default();
-    patch.load(0..mesh.len() as u32, mesh, &mesh.neighbours(), gauge);
+    let links = mesh.links(&Monitor::silent()).unwrap();
+    patch.load(0..mesh.len() as u32, mesh, &links.neighbours, gauge);
     Fields::of_thickness(patch, numbers)
 }
 
@@ -165,7 +167,8 @@ fn a_spin_within_the_plane_is_the_smallest_rotation_between_planes() {
     let positions = mesh.positions().iter().map(bend).collect();
     mesh = ShellMesh::new(positions, mesh.corners().to_vec(), mesh.parts().to_vec()).unwrap();
     let mut patch = Patch::default();
-    patch.load(0..mesh.len() as u32, &mesh, &mesh.neighbours(), &[]);
+    let links = mesh.links(&Monitor::silent()).unwrap();
+    patch.load(0..mesh.len() as u32, &mesh, &links.neighbours, &[]);
     let tensor = [120.0, -35.0, 4.0, 22.0, -7.0, 13.0];
     let mut n_links = 0;
     for slot in 0..mesh.len() {
@@ -213,13 +216,14 @@ fn a_fold_is_no_neighbour_seen_from_below() {
     let upwards: Vec<[u32; 4]> = upwards.collect();
     for (corners, n_opposed) in [(flat.corners().to_vec(), 0), (upwards, 16)] {
         let mesh = ShellMesh::new(positions.clone(), corners, flat.parts().to_vec()).unwrap();
-        let neighbours = mesh.neighbours();
+        let links = mesh.links(&Monitor::silent()).unwrap();
+        let neighbours = &links.neighbours;
         let pairs = (0..mesh.len()).flat_map(|a| neighbours.of(a).iter().map(move |&b| (a, b)));
         let opposed =
             pairs.filter(|&(a, b)| a < b as usize && neighbours.are_opposed(a, b as usize));
         assert_eq!(opposed.count(), n_opposed);
         let mut patch = Patch::default();
-        patch.load(0..mesh.len() as u32, &mesh, &neighbours, &[]);
+        patch.load(0..mesh.len() as u32, &mesh, neighbours, &[]);
         for slot in 0..mesh.len() {
             for link in patch.links(slot) {
                 let seen = patch.seen()[link.slot as usize];

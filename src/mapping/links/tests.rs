@@ -55,7 +55,8 @@ fn a_fan_of_usual_size_has_all_its_elements_beside_each_other() {
     }));
     let corners = (0..n).map(|i| [0, i + 1, i + 2, i + 2]).collect();
     let mesh = ShellMesh::new(positions, corners, vec![0; n as usize]).unwrap();
-    let neighbours = mesh.neighbours();
+    let links = mesh.links(&Monitor::silent()).unwrap();
+    let neighbours = &links.neighbours;
     assert!((0..n as usize).all(|element| neighbours.of(element).len() == MOST_AT_NODE - 1));
 }
 
@@ -93,7 +94,8 @@ fn no_element_is_reversed_over_an_edge_of_three() {
         let positions = order.map(|element| elements[element]).concat();
         let corners = (0..4).map(|i| [4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3]);
         let mesh = ShellMesh::new(positions, corners.collect(), vec![0; 4]).unwrap();
-        let neighbours = mesh.neighbours();
+        let links = mesh.links(&Monitor::silent()).unwrap();
+        let neighbours = &links.neighbours;
         assert!(neighbours.any_opposed());
         for (a, of_a) in order.into_iter().enumerate() {
             for (b, of_b) in order.into_iter().enumerate() {
@@ -101,7 +103,6 @@ fn no_element_is_reversed_over_an_edge_of_three() {
                 assert_eq!(neighbours.are_opposed(a, b), is_one_reversed, "{order:?}");
             }
         }
-        let reversed = reversed_elements(&mesh, &Monitor::silent()).unwrap();
-        assert_eq!(reversed, order.map(|element| element == 3));
+        assert_eq!(neighbours.reversed(), order.map(|element| element == 3));
     }
 }

@@ -48,7 +48,8 @@ impl DefaultThickness {
 /// without).
 fn spread(run: &MapRun, monitor: &Monitor) -> Result<Vec<f64>, Cancelled> {
     let mesh = &run.target.mesh;
-    let neighbours = mesh.links(monitor)?.neighbours;
+    let links = mesh.links(monitor)?;
+    let neighbours = &links.neighbours;
     let known: Vec<f64> = (0..mesh.len())
         .map(|element| run.thickness(element))
         .collect();

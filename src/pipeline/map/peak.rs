@@ -92,7 +92,8 @@ fn mean_around(
 ) -> Result<Option<f64>, Cancelled> {
     let mesh = &source.mesh;
     let (place, normal) = (mesh.centroids()[center], mesh.normals()[center]);
-    let neighbours = mesh.links(monitor)?.neighbours;
+    let links = mesh.links(monitor)?;
+    let neighbours = &links.neighbours;
     let mut around: Vec<(f64, usize)> = Vec::new();
     for_chunks(mesh.len(), monitor, |range| {
         let all = range.map(|e| ((mesh.centroids()[e] - place).norm_squared(), e));
