@@ -73,8 +73,8 @@ pub enum Effect {
         /// What the file says about itself: keyword and text.
         texts: Vec<(&'static str, String)>,
     },
-    /// Tell the desktop if the window is in the background.
-    NotifyDesktop(String),
+    /// Ask the desktop to point to the window if it is in the background.
+    NotifyDesktop,
     /// Close the window.
     Quit,
 }

@@ -209,11 +209,6 @@ impl SectionLine {
         let triangles = self.triangles.iter().enumerate();
         triangles.map(move |(i, &triangle)| (ends(i), triangle))
     }
-
-    /// Length of the line.
-    pub fn length(&self) -> f64 {
-        self.pieces().map(|([a, b], _)| (b - a).norm()).sum()
-    }
 }
 
 /// The point of some lines that is closest to `query`, the first of equal ones. O(pieces).
@@ -364,6 +359,10 @@ mod tests {
     use super::*;
     use std::f64::consts::{PI, TAU};
 
+    fn length(line: &SectionLine) -> f64 {
+        line.pieces().map(|([a, b], _)| (b - a).norm()).sum()
+    }
+
     /// A tube about z, open at both ends, `n` sides, `rings` rings of unit height.
     fn tube(n: u32, rings: u32) -> TriMesh {
         let mut positions = Vec::new();
@@ -428,7 +427,7 @@ mod tests {
             let circle = &lines[0];
             assert!(circle.is_closed);
             let chord_sum = 128.0 * (PI / 64.0).sin();
-            assert!((circle.length() - chord_sum).abs() < 1e-3, "{height}");
+            assert!((length(circle) - chord_sum).abs() < 1e-3, "{height}");
             let radius = |p: &Point3| p.x.hypot(p.y);
             assert!(circle.points.iter().all(|p| (p.z - height).abs() < 1e-12));
             assert!(circle.points.iter().all(|p| radius(p) <= 1.0 + 1e-12));
@@ -445,7 +444,7 @@ mod tests {
             assert_eq!(lines.len(), 2, "{normal:?}");
             for line in &lines {
                 assert!(!line.is_closed);
-                assert!((line.length() - 4.0).abs() < 1e-9);
+                assert!((length(line) - 4.0).abs() < 1e-9);
                 assert_eq!(line.points.len(), line.triangles.len() + 1);
             }
         }
@@ -460,7 +459,7 @@ mod tests {
         // Ramanujan's circumference of an ellipse with half axes √2 and 1.
         let (a, b) = (2f64.sqrt(), 1.0);
         let circumference = PI * (3.0 * (a + b) - ((3.0 * a + b) * (a + 3.0 * b)).sqrt());
-        assert!((lines[0].length() - circumference).abs() < 1e-3);
+        assert!((length(&lines[0]) - circumference).abs() < 1e-3);
     }
 
     #[test]
@@ -493,7 +492,7 @@ mod tests {
         let lines = section(&star, &at([0.0, 0.0, 0.3], [0.0, 0.0, 1.0]));
         assert_eq!(lines.len(), 3);
         for line in &lines {
-            assert!((line.length() - 1.0).abs() < 1e-12 && line.triangles.len() == 2);
+            assert!((length(line) - 1.0).abs() < 1e-12 && line.triangles.len() == 2);
         }
     }
 

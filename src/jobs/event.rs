@@ -31,10 +31,3 @@ pub struct JobEvent {
     /// Started, progressed or ended.
     pub stage: JobStage,
 }
-
-impl JobEvent {
-    /// True for the last event of a job.
-    pub fn is_last(&self) -> bool {
-        !matches!(self.stage, JobStage::Started)
-    }
-}

@@ -184,11 +184,6 @@ impl<const N: usize> Layered<N> {
         })
     }
 
-    /// Number of elements, with and without values.
-    pub fn n_elements(&self) -> usize {
-        self.records.len()
-    }
-
     /// Number of elements that have values.
     pub fn n_present(&self) -> usize {
         self.records

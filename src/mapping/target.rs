@@ -202,14 +202,6 @@ impl<const N: usize> MappedLayers<N> {
         let range = self.starts[element] as usize..self.starts[element + 1] as usize;
         &self.values[range]
     }
-
-    /// Number of elements that have values.
-    pub fn n_present(&self) -> usize {
-        self.starts
-            .windows(2)
-            .filter(|pair| pair[0] < pair[1])
-            .count()
-    }
 }
 
 /// What a mapping gives.

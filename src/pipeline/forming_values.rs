@@ -26,16 +26,6 @@ pub enum FormingValue {
 }
 
 impl FormingValue {
-    /// All, in the order of menus.
-    pub const ALL: [Self; 6] = [
-        Self::Thinning,
-        Self::PlasticStrain,
-        Self::MajorStrain,
-        Self::MinorStrain,
-        Self::VonMises,
-        Self::MajorStress,
-    ];
-
     /// Its name in menus and legends.
     pub fn label(self) -> &'static str {
         match self {

@@ -176,8 +176,6 @@ pub struct MatchOutcome {
     pub termination: Termination,
     /// Which mesh supplied the points.
     pub data_side: Side,
-    /// True if the source's normals point to the other side of the sheet than the target's.
-    pub normals_opposed: bool,
     /// The floor σ0 of the last stage.
     #[serde(with = "any_float")]
     pub floor: f64,

@@ -10,7 +10,6 @@ use super::multi_start::starts::StartKind;
 use super::result::{MatchOutcome, MatchTimings, MirrorCheck, Side, StartOutcome, StartRecord};
 use super::scale_check::ScaleCheck;
 use super::settings::{Hand, MatchSettings};
-use super::surface::Surface;
 use crate::geometry::Similarity;
 
 /// Umeyama's solution over all nodes.
@@ -46,7 +45,6 @@ pub(super) fn match_same_nodes(
         target_from_source,
         termination: Termination::ClosedForm,
         data_side: Side::Source,
-        normals_opposed: opposed(input, &target_from_source),
         floor: 0.0,
         alternatives: Vec::new(),
         with_all_pairs: None,
@@ -81,13 +79,4 @@ pub(super) fn match_same_nodes(
             ..MatchTimings::default()
         },
     })
-}
-
-/// True if the mean normals point to opposite sides under the pose.
-fn opposed(input: &MatchInput<'_>, target_from_source: &Similarity) -> bool {
-    let normal = |surface: &Surface| surface.measures().mean_normal;
-    target_from_source
-        .rotate(&normal(input.source))
-        .dot(&normal(input.target))
-        < 0.0
 }

@@ -62,11 +62,6 @@ impl PointTree {
         })
     }
 
-    /// The points, as given.
-    pub fn points(&self) -> &[Point3] {
-        &self.points
-    }
-
     /// The closest point within `max_distance` (may be infinite), or `None` if there is none or
     /// the query is not finite. `hint` names a point that is probably close; it changes the speed,
     /// never the answer.

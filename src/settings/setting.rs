@@ -43,15 +43,6 @@ pub enum Group {
 }
 
 impl Group {
-    /// Every group, in the order of help and form.
-    pub const ALL: [Self; 5] = [
-        Self::Method,
-        Self::Starts,
-        Self::Correspondences,
-        Self::Search,
-        Self::Values,
-    ];
-
     /// Heading of the group.
     pub fn title(self) -> &'static str {
         match self {

@@ -18,20 +18,14 @@ pub(super) struct Collapse {
     pub(super) removed: u32,
     /// Triangles left afterwards.
     pub(super) n_triangles: u32,
-    /// Border loops closed by this collapse, 0 or 1.
-    pub(super) closes: u32,
     /// Where the kept vertex is afterwards, in unit coordinates.
     pub(super) position: Vector3<f64>,
-    /// The quadrics' mean square distance here, in unit coordinates.
-    pub(super) error: f64,
 }
 
 /// What moving an edge's ends together costs, and where to.
 struct Price {
     cost: f64,
     position: Vector3<f64>,
-    /// Sum of the weights behind the cost.
-    weight: f64,
 }
 
 /// Edges that are priced before a cancel request is looked for.
@@ -250,13 +244,7 @@ impl Decimator {
             kept,
             removed,
             n_triangles: self.surface.n_triangles as u32,
-            closes: u32::from(third.is_some()),
             position: price.position,
-            error: if price.weight > 0.0 {
-                price.cost / price.weight
-            } else {
-                0.0
-            },
         });
         if let Some(third) = third {
             self.close_loop(kept, third);
@@ -368,7 +356,6 @@ impl Decimator {
         Some(Price {
             cost,
             position: first.position + shift,
-            weight: quadric.weight(),
         })
     }
 

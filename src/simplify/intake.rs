@@ -40,11 +40,6 @@ impl Frame {
     pub(super) fn restore(self, position: &Vector3<f64>) -> Point3 {
         self.center + position * self.diagonal
     }
-
-    /// Diagonal of the mesh, the unit of length inside.
-    pub(super) fn diagonal(self) -> f64 {
-        self.diagonal
-    }
 }
 
 /// What is left of a mesh, in unit coordinates. Vertices keep their numbers.

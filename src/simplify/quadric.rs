@@ -163,11 +163,6 @@ impl EdgeQuadric {
         let value = (self.across - least).dot(&self.second_times_across);
         Some((least, value.max(0.0)))
     }
-
-    /// Sum of both ends' weights.
-    pub(super) fn weight(&self) -> f64 {
-        self.sum.weight()
-    }
 }
 
 #[cfg(test)]

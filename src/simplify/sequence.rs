@@ -24,7 +24,7 @@ pub struct CollapseSequence {
 
 impl CollapseSequence {
     /// Collapses `mesh` down to `settings.max_triangles`, or until nothing legal is left, and
-    /// remembers every step. 56 bytes or so per vertex beside the mesh.
+    /// remembers every step. 48 bytes or so per vertex beside the mesh.
     pub fn record(
         mesh: &TriMesh,
         settings: &SimplifySettings,
@@ -63,21 +63,11 @@ impl CollapseSequence {
         })
     }
 
-    /// Triangles of the finest level: the input less repeated and degenerate triangles.
-    pub fn finest(&self) -> usize {
-        self.triangles.len()
-    }
-
     /// Triangles of the coarsest level.
     pub fn coarsest(&self) -> usize {
         self.collapses
             .last()
             .map_or(self.triangles.len(), |c| c.n_triangles as usize)
-    }
-
-    /// Why the recording ended where it did.
-    pub fn stop_reason(&self) -> StopReason {
-        self.stop_reason
     }
 
     /// The finest mesh with at most `max_triangles` triangles; the coarsest if none is so small.
@@ -142,19 +132,14 @@ impl CollapseSequence {
         let mesh = TriMesh::new(positions, triangles)
             .expect("indices are numbered above and collapses end at finite places");
         Ok(Simplified {
-            report: self.report(made, max_triangles, mesh.n_triangles()),
+            report: self.report(max_triangles, mesh.n_triangles()),
             mesh,
             triangle_of,
             vertex_of,
         })
     }
 
-    fn report(
-        &self,
-        made: &[Collapse],
-        max_triangles: usize,
-        triangles_after: usize,
-    ) -> SimplifyReport {
+    fn report(&self, max_triangles: usize, triangles_after: usize) -> SimplifyReport {
         let stop_reason = if triangles_after <= max_triangles {
             StopReason::Reached
         } else {
@@ -163,12 +148,7 @@ impl CollapseSequence {
         SimplifyReport {
             triangles_before: self.n_before,
             triangles_after,
-            triangles_dropped: self.n_before - self.triangles.len(),
             stop_reason,
-            loops_closed: made.iter().map(|c| c.closes as usize).sum(),
-            last_quadric_error: made
-                .last()
-                .map_or(0.0, |c| c.error.sqrt() * self.frame.diagonal()),
         }
     }
 }

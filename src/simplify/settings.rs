@@ -130,15 +130,8 @@ pub struct SimplifyReport {
     pub triangles_before: usize,
     /// Triangles of the result.
     pub triangles_after: usize,
-    /// Triangles left out at once: they name a vertex twice or repeat an earlier triangle.
-    pub triangles_dropped: usize,
     /// Why it ended.
     pub stop_reason: StopReason,
-    /// Border loops closed because nothing else was left to collapse.
-    pub loops_closed: usize,
-    /// Square root of the area-weighted mean square distance the quadrics estimate for the last
-    /// collapse, in length units. An estimate by planes, not a measured distance.
-    pub last_quadric_error: f64,
 }
 
 /// A simplified mesh with its ties to the original.

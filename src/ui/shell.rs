@@ -307,7 +307,7 @@ impl Shell {
                 self.is_unsaved = true;
                 self.apply_settings(ctx);
             }
-            Effect::NotifyDesktop(_) => {
+            Effect::NotifyDesktop => {
                 let ask = egui::UserAttentionType::Informational;
                 ctx.send_viewport_cmd(egui::ViewportCommand::RequestUserAttention(ask));
             }

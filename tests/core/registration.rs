@@ -439,7 +439,7 @@ fn orientation_of_the_elements_does_not_matter() {
     let target = pan(13.0, 0.35, everywhere);
     let (source, truth) = moved(&pan(10.0, 0.0, everywhere), 6);
     let outcome = check(&source.clone().flipped(), &target, &truth, 0.2);
-    assert!(outcome.normals_opposed);
+    assert!(outcome.starts[outcome.winner].flipped);
     let (positions, mut triangles) = source.into_parts();
     for corners in triangles.iter_mut().step_by(3) {
         corners.swap(0, 2);

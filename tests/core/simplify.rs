@@ -53,7 +53,7 @@ fn a_flat_plate_needs_two_triangles() {
     assert_eq!(result.mesh.n_triangles(), 2);
     assert_eq!(result.report.stop_reason, StopReason::Reached);
     assert!((result.mesh.area() - 144.0).abs() < 0.1);
-    assert!(result.report.last_quadric_error < 0.1);
+    assert!(result.mesh.positions().iter().all(|p| p.z.abs() < 1e-9));
 }
 
 #[test]
@@ -66,7 +66,6 @@ fn a_pan_stays_a_manifold_with_its_loops_and_normals() {
         assert!((n - 1..=n).contains(&result.mesh.n_triangles()));
         assert_eq!(widest_edge(&result.mesh), 2);
         assert_eq!(n_loops(&result.mesh), 13, "at {n} triangles");
-        assert_eq!(result.report.loops_closed, 0);
         let (_, n_components) = Topology::of(&result.mesh).components(result.mesh.n_triangles());
         assert_eq!(n_components, 1);
         let upright = (0..result.mesh.n_triangles()).all(|t| result.mesh.normal(t).z > 0.0);
@@ -79,8 +78,7 @@ fn loops_close_only_when_nothing_else_is_left() {
     let mesh = pan(40.0);
     let result = reduce(&mesh, 40);
     assert!((39..=40).contains(&result.mesh.n_triangles()));
-    assert_eq!(n_loops(&result.mesh), 13 - result.report.loops_closed);
-    assert!(result.report.loops_closed > 0);
+    assert_eq!(n_loops(&result.mesh), 6);
 
     let settings = SimplifySettings {
         may_close_loops: false,
@@ -234,7 +232,6 @@ fn odd_input_is_taken_as_it_comes() {
     ];
     let mesh = TriMesh::new(positions, triangles).unwrap();
     let result = reduce(&mesh, 100);
-    assert_eq!(result.report.triangles_dropped, 2);
     assert_eq!(result.mesh.n_triangles(), 4);
     assert_eq!(result.vertex_of[5], u32::MAX);
     assert!(reduce(&mesh, 0).mesh.n_triangles() > 0);

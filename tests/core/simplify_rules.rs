@@ -123,9 +123,9 @@ fn a_tetrahedron_is_not_folded_into_a_doubled_triangle() {
 #[test]
 fn a_loop_of_three_closes_only_if_it_may() {
     let kept = fewest(&ring(), false);
-    assert_eq!((n_loops(&kept.mesh), kept.report.loops_closed), (2, 0));
+    assert_eq!(n_loops(&kept.mesh), 2);
     let closed = fewest(&ring(), true);
-    assert_eq!((n_loops(&closed.mesh), closed.report.loops_closed), (1, 1));
+    assert_eq!(n_loops(&closed.mesh), 1);
     assert_eq!(widest_edge(&closed.mesh), closed.mesh.n_triangles().min(2));
 }
 

@@ -49,10 +49,10 @@ impl MatchState {
             before,
             // What was found is no failure: its message goes with the result.
             level: level.min(NoticeLevel::Warning),
-            line: line.clone(),
+            line,
         });
         if took >= LONG_RUN {
-            vec![Effect::NotifyDesktop(line)]
+            vec![Effect::NotifyDesktop]
         } else {
             Vec::new()
         }

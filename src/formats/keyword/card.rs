@@ -213,16 +213,6 @@ impl<'a> Card<'a> {
         self.slice(start, end)
     }
 
-    /// From the start of the field at `index` to the end of the line.
-    pub fn rest(&self, widths: &[u8], index: usize) -> Field<'_> {
-        if self.free {
-            let field = self.free_field(index);
-            return self.slice(field.column, self.text.len());
-        }
-        let start: usize = widths[..index].iter().map(|&w| self.layout.width(w)).sum();
-        self.slice(start, self.text.len())
-    }
-
     fn free_field(&self, index: usize) -> Field<'_> {
         let mut start = 0;
         for (i, value) in self.text.split(|&b| b == b',').enumerate() {

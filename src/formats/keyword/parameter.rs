@@ -154,11 +154,6 @@ impl ParameterTable {
         Self::default()
     }
 
-    /// True if nothing is defined, so that no field can hold a parameter.
-    pub fn is_empty(&self) -> bool {
-        self.global.is_empty() && self.local.iter().all(BTreeMap::is_empty)
-    }
-
     /// Begins a file; its `_LOCAL` parameters end with [`ParameterTable::pop_scope`].
     pub fn push_scope(&mut self) {
         self.local.push(BTreeMap::new());

@@ -16,19 +16,6 @@ pub enum OrbitStyle {
     Free,
 }
 
-impl OrbitStyle {
-    /// Both, the default first.
-    pub const ALL: [Self; 2] = [Self::Turntable, Self::Free];
-
-    /// Name in menus.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Turntable => "Turntable",
-            Self::Free => "Free",
-        }
-    }
-}
-
 /// Smallest picture height over the scene's diagonal.
 const CLOSEST: f64 = 1e-3;
 /// Largest picture height over the scene's diagonal.

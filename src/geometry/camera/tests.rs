@@ -75,7 +75,7 @@ fn the_clip_matrix_agrees_with_project() {
 #[test]
 fn orbiting_keeps_the_pivot_on_its_pixel() {
     let pivot = Point3::new(5040.0, -170.0, 880.0);
-    for style in OrbitStyle::ALL {
+    for style in [OrbitStyle::Turntable, OrbitStyle::Free] {
         for mut camera in cameras() {
             let before = camera.project(&pivot, SCREEN);
             for _ in 0..50 {
@@ -90,7 +90,7 @@ fn orbiting_keeps_the_pivot_on_its_pixel() {
 
 #[test]
 fn dragging_right_moves_the_near_side_right() {
-    for style in OrbitStyle::ALL {
+    for style in [OrbitStyle::Turntable, OrbitStyle::Free] {
         let mut camera = Camera::default();
         let near = Point3::from(-camera.forward() * 0.1);
         camera.orbit(style, &Point3::origin(), 0.1, 0.0);

@@ -104,7 +104,6 @@ pub(crate) struct Refined {
     pub(crate) target_from_source: Similarity,
     pub(crate) run: Run,
     pub(crate) data_side: Side,
-    pub(crate) flipped: bool,
     pub(crate) floor: f64,
     /// Where pairs were left out, where keeping all of them leads from there.
     pub(crate) with_all_pairs: Option<Similarity>,
@@ -481,7 +480,6 @@ impl<'a> MultiStart<'a> {
                 target_from_source: winner.target_from_source,
                 run: candidate.run.clone(),
                 data_side: choice.data_side(),
-                flipped,
                 floor: rules.selection.floor,
                 with_all_pairs: None,
             });
@@ -540,7 +538,6 @@ impl<'a> MultiStart<'a> {
             target_from_source: frames.target_from_source(&run.model_from_data),
             run: run.clone(),
             data_side: frames.data_side,
-            flipped,
             floor: rules.selection.floor,
             with_all_pairs: all.map(|pose| frames.target_from_source(&pose)),
         };

@@ -45,7 +45,6 @@ pub(crate) fn decide(
         target_from_source,
         run,
         data_side,
-        flipped,
         floor,
         with_all_pairs,
     } = refined;
@@ -62,7 +61,6 @@ pub(crate) fn decide(
         target_from_source,
         termination: run.termination.unwrap_or(Termination::MaxIterations),
         data_side,
-        normals_opposed: flipped,
         floor,
         alternatives,
         rivals_sought,
