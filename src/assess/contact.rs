@@ -126,7 +126,7 @@ impl<'a> ContactSearch<'a> {
         pose: &Similarity,
         scaled: Option<&Scaled>,
     ) -> Option<Contacts> {
-        let sides = Sides::new([self.source, self.target], pose, self.of_source);
+        let sides = NodesOnSurface::new([self.source, self.target], pose, self.of_source);
         let reach = self.reach;
         let nodes = self.nodes.par_iter().zip(&mut self.closest);
         let (list, unmet) = nodes.partition_map(|(&node, closest)| {
@@ -162,7 +162,7 @@ impl<'a> ContactSearch<'a> {
         pose: &Similarity,
         is_asked: impl Fn(&Point3) -> bool + Sync,
     ) -> Vec<Contact> {
-        let sides = Sides::new([self.source, self.target], pose, !self.of_source);
+        let sides = NodesOnSurface::new([self.source, self.target], pose, !self.of_source);
         let positions = sides.data.mesh().positions();
         let asked = (0..positions.len()).into_par_iter().filter(|&vertex| {
             is_asked(&if sides.of_source {
@@ -183,7 +183,7 @@ impl<'a> ContactSearch<'a> {
         of_source: bool,
         nodes: &[WeightedNode],
     ) -> Vec<Contact> {
-        let sides = Sides::new([self.source, self.target], pose, of_source);
+        let sides = NodesOnSurface::new([self.source, self.target], pose, of_source);
         let met = |&node: &WeightedNode| sides.contact(node, self.reach, None, &mut None);
         nodes.par_iter().filter_map(met).collect()
     }
@@ -191,13 +191,13 @@ impl<'a> ContactSearch<'a> {
     /// Share of the smaller part's area that lies beyond the borders of the other part under a pose: its closest
     /// place there is a border that lies off its reach or beside it. O(nodes · log triangles).
     pub(crate) fn overhang(&self, pose: &Similarity) -> f64 {
-        let Sides {
+        let NodesOnSurface {
             data,
             model,
             model_from_data,
             unit,
             ..
-        } = Sides::new([self.source, self.target], pose, self.of_source);
+        } = NodesOnSurface::new([self.source, self.target], pose, self.of_source);
         let reach = self.reach / unit;
         let areas = self.nodes.par_iter().map(|node| {
             let moved = model_from_data.apply(&data.mesh().positions()[node.vertex as usize]);
@@ -218,7 +218,7 @@ impl<'a> ContactSearch<'a> {
 }
 
 /// Whose nodes are looked at under a pose, and the surface that they are measured against.
-struct Sides<'a> {
+struct NodesOnSurface<'a> {
     pose: &'a Similarity,
     of_source: bool,
     data: &'a Surface,
@@ -228,7 +228,7 @@ struct Sides<'a> {
     unit: f64,
 }
 
-impl<'a> Sides<'a> {
+impl<'a> NodesOnSurface<'a> {
     fn new([source, target]: [&'a Surface; 2], pose: &'a Similarity, of_source: bool) -> Self {
         let (data, model, model_from_data, unit) = if of_source {
             (source, target, *pose, 1.0)

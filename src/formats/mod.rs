@@ -26,7 +26,7 @@ pub use diagnostic::{Diagnostic, DiagnosticKind, Diagnostics, Position, Severity
 pub use file_bytes::FileBytes;
 pub use foreign::Foreign;
 pub use hash::{FileHash, HashError};
-pub use model::{Model, PartSummary, Selection, SelectionError, Surface};
+pub use model::{ChosenMesh, Model, PartSummary, Selection, SelectionError};
 pub use source::{CheckedSource, Disk, FileSource, FileStamp, Memory, Replaced};
 
 use crate::monitor::{Cancelled, Monitor};

@@ -3,16 +3,18 @@
 
 use super::{Border, Point3, TriMesh};
 
-/// A hole is round if its points differ so little in their distance from the middle.
+/// A hole is round if its points differ so little in their distance from the middle. That is looser than what
+/// [`Border::circle`] takes: a hole that is a little oval has a middle to point at, and only such with a circle are
+/// compared by it.
 const ROUND: f64 = 0.25;
 /// A border turns by at least so much at a corner, in degrees.
 const CORNER_DEG: f64 = 45.0;
 /// Holes with fewer vertices are slits.
 const LEAST: usize = 6;
 
-/// A hole in a sheet.
+/// A hole that is about round.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hole {
+pub struct RoundHole {
     /// Middle of its border, see [`Border::center`].
     pub center: Point3,
     /// Mean distance of the border from the middle.
@@ -23,7 +25,7 @@ pub struct Hole {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Landmarks {
     /// Round holes.
-    pub holes: Vec<Hole>,
+    pub holes: Vec<RoundHole>,
     /// Corners of the trim and of holes that are not round.
     pub corners: Vec<Point3>,
 }
@@ -46,7 +48,7 @@ fn point(mesh: &TriMesh, vertex: u32) -> Point3 {
     mesh.positions()[vertex as usize]
 }
 
-fn round_hole(mesh: &TriMesh, border: &Border) -> Option<Hole> {
+fn round_hole(mesh: &TriMesh, border: &Border) -> Option<RoundHole> {
     if !border.is_hole || border.vertices.len() < LEAST {
         return None;
     }
@@ -59,7 +61,7 @@ fn round_hole(mesh: &TriMesh, border: &Border) -> Option<Hole> {
         total += radius;
     }
     let radius = total / border.vertices.len() as f64;
-    (most - least < ROUND * radius).then_some(Hole { center, radius })
+    (most - least < ROUND * radius).then_some(RoundHole { center, radius })
 }
 
 fn corners(mesh: &TriMesh, border: &Border) -> Vec<Point3> {

@@ -25,7 +25,7 @@ pub use border_edges::{BorderEdge, BorderEdges, BorderLoop};
 pub use borders::{Border, Circle};
 pub use camera::{Camera, Projection};
 pub use clean::CleanMesh;
-pub use landmarks::{Hole, Landmarks};
+pub use landmarks::{Landmarks, RoundHole};
 pub use merged::MergedMesh;
 pub use mesh::{MeshError, TriMesh};
 pub use normals::{CornerNormals, VertexFans, corner_normals, face_normals};

@@ -65,7 +65,7 @@ pub fn distribution(values: impl Iterator<Item = (f64, f64)>) -> Option<Distribu
 
 /// Shares of the area in equal bins over a range.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Histogram {
+pub struct ValueHistogram {
     /// Lower end of the first bin.
     pub min: f64,
     /// Upper end of the last bin.
@@ -74,7 +74,7 @@ pub struct Histogram {
     pub shares: Vec<f64>,
 }
 
-impl Histogram {
+impl ValueHistogram {
     /// Fifty bins over a range; values outside it count in the first or last bin.
     pub fn new(values: impl Iterator<Item = (f64, f64)>, min: f64, max: f64) -> Self {
         let mut shares = vec![0.0; N_BINS];
@@ -93,7 +93,7 @@ impl Histogram {
 
 /// Half the sum of the differences of two histograms over the same range: 0 for equal, 1 for
 /// disjoint ones.
-pub fn histogram_distance(a: &Histogram, b: &Histogram) -> f64 {
+pub fn histogram_distance(a: &ValueHistogram, b: &ValueHistogram) -> f64 {
     let pairs = a.shares.iter().zip(&b.shares);
     0.5 * pairs.map(|(a, b)| (a - b).abs()).sum::<f64>()
 }
@@ -320,8 +320,8 @@ mod tests {
 
     #[test]
     fn histograms_differ_by_the_share_that_moved() {
-        let a = Histogram::new([(0.1, 1.0), (0.9, 3.0)].into_iter(), 0.0, 1.0);
-        let b = Histogram::new([(0.1, 2.0), (0.9, 2.0)].into_iter(), 0.0, 1.0);
+        let a = ValueHistogram::new([(0.1, 1.0), (0.9, 3.0)].into_iter(), 0.0, 1.0);
+        let b = ValueHistogram::new([(0.1, 2.0), (0.9, 2.0)].into_iter(), 0.0, 1.0);
         assert_eq!(histogram_distance(&a, &a), 0.0);
         assert_eq!(histogram_distance(&a, &b), 0.25);
     }

@@ -35,7 +35,8 @@ mod uniqueness;
 
 pub use balance::ForceBalance;
 pub use checks::{
-    BackDifference, Distribution, Histogram, MapBack, distribution, histogram_distance, map_back,
+    BackDifference, Distribution, MapBack, ValueHistogram, distribution, histogram_distance,
+    map_back,
 };
 pub use error::MappingError;
 pub use history::{LawGap, LayerHistory, MappedHistory, SourceHistory};

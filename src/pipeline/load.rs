@@ -485,7 +485,7 @@ pub fn prepare(
 /// Area-weighted mean thickness of the chosen elements in the file's own unit, if known.
 fn mean_thickness(
     model: &Model,
-    chosen: &formats::Surface,
+    chosen: &formats::ChosenMesh,
     monitor: &Monitor,
 ) -> Result<Option<f64>, Cancelled> {
     // As a difference from the first, so that equal thicknesses have themselves as mean.

@@ -102,13 +102,13 @@ impl Bvh {
 }
 
 /// The triangles that a filter lets through.
-struct Facing<'a> {
+struct FacingTriangles<'a> {
     tree: &'a Bvh,
     filter: &'a NormalFilter,
     cones: ConeFilter,
 }
 
-impl Admit<TrianglePack> for Facing<'_> {
+impl Admit<TrianglePack> for FacingTriangles<'_> {
     #[inline]
     fn items(&self, pack: &TrianglePack, marked: u32) -> u32 {
         self.tree.admitted(self.filter, pack, marked)
@@ -146,7 +146,7 @@ impl ClosestPoint for Bvh {
         let nearest = match filter {
             None => self.walk(query, max_distance, hint, All),
             Some(filter) => {
-                let facing = Facing {
+                let facing = FacingTriangles {
                     tree: self,
                     filter,
                     cones: ConeFilter::of(filter),

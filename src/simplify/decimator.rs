@@ -6,7 +6,7 @@ use super::legality::{Refusal, Ring, keeps_orientation, link_condition};
 use super::quadric::{EdgeQuadric, Quadric, pull_of};
 use super::queue::{Entry, N_BUCKETS, Queue, key_of, later_than};
 use super::settings::{Placement, SimplifySettings, StopReason};
-use super::surface::{Kind, Surface};
+use super::surface::{CollapsingMesh, Kind};
 use crate::monitor::{Cancelled, Monitor};
 
 /// One collapse as it is remembered.
@@ -58,7 +58,7 @@ pub(super) struct Decimator {
     may_close_loops: bool,
     boundary_weight: f64,
     stiffness: f64,
-    surface: Surface,
+    surface: CollapsingMesh,
     ring: Ring,
     queue: Queue,
     closing: bool,
@@ -69,7 +69,7 @@ pub(super) struct Decimator {
 
 impl Decimator {
     pub(super) fn new(
-        surface: Surface,
+        surface: CollapsingMesh,
         settings: &SimplifySettings,
         is_exact: bool,
         monitor: &Monitor,
@@ -93,7 +93,7 @@ impl Decimator {
         Ok(decimator)
     }
 
-    pub(super) fn surface(&self) -> &Surface {
+    pub(super) fn surface(&self) -> &CollapsingMesh {
         &self.surface
     }
 
@@ -260,7 +260,7 @@ impl Decimator {
     /// Gives the triangles that stay around a collapsed edge their new pulls, and the vertices they
     /// belong to their new quadrics: the merged vertex, and if it is to be exact all its neighbours.
     fn renew_quadrics(&mut self, kept: u32) {
-        let Surface {
+        let CollapsingMesh {
             vertices, faces, ..
         } = &mut self.surface;
         let stiffness = self.stiffness;

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::quadric::Quadric;
 use super::settings::SimplifySettings;
-use super::surface::{Kind, Surface};
+use super::surface::{CollapsingMesh, Kind};
 use crate::geometry::chunks::{CHUNK, for_chunks, map_chunks};
 use crate::geometry::{Aabb, Point3, TriMesh};
 use crate::monitor::{Cancelled, Monitor};
@@ -132,11 +132,11 @@ fn chain_of(corners: &[u32; 3], n_chains: usize) -> usize {
 
 /// Gives every vertex its quadric and its kind.
 pub(super) fn add_quadrics(
-    surface: &mut Surface,
+    surface: &mut CollapsingMesh,
     settings: &SimplifySettings,
     monitor: &Monitor,
 ) -> Result<(), Cancelled> {
-    let Surface {
+    let CollapsingMesh {
         vertices,
         faces,
         edges,

@@ -4,7 +4,7 @@ use std::hint::select_unpredictable;
 
 use nalgebra::Vector3;
 
-use super::surface::Surface;
+use super::surface::CollapsingMesh;
 
 /// Why a collapse may not be made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,7 +90,7 @@ impl Ring {
 /// one. With `may_close`, one more common neighbour is allowed if it closes a border loop of three.
 /// Fills `ring`, all of it if the answer is yes.
 pub(super) fn link_condition(
-    surface: &Surface,
+    surface: &CollapsingMesh,
     ring: &mut Ring,
     a: u32,
     b: u32,
@@ -151,7 +151,7 @@ pub(super) fn link_condition(
 
 /// True if a triangle (a, c, d) and a triangle (b, c, d) would become one. That needs c and d to
 /// be joined to both ends, so both are opposite to the edge.
-fn doubles_a_triangle(surface: &Surface, ring: &Ring, a: u32, b: u32) -> bool {
+fn doubles_a_triangle(surface: &CollapsingMesh, ring: &Ring, a: u32, b: u32) -> bool {
     let is_opposite = |v: u32| ring.gone.iter().any(|&(_, opposite)| opposite == v);
     let both_opposite = |vertex: u32| {
         surface.faces_around(vertex).filter_map(move |(_, face)| {
@@ -166,7 +166,7 @@ fn doubles_a_triangle(surface: &Surface, ring: &Ring, a: u32, b: u32) -> bool {
 /// its area, when both ends of the edge whose `ring` is filled move to `position`. Triangles without
 /// area may do as they like. Leaves the new normals in the ring; not all if the answer is no.
 pub(super) fn keeps_orientation(
-    surface: &Surface,
+    surface: &CollapsingMesh,
     ring: &mut Ring,
     position: &Vector3<f64>,
     min_cosine: f64,

@@ -14,7 +14,7 @@ use super::decimator::{Collapse, Decimator};
 use super::intake::{UnitMesh, add_quadrics};
 use super::queue::N_BUCKETS;
 use super::settings::{SimplifySettings, Speed, StopReason};
-use super::surface::{Kind, Surface};
+use super::surface::{CollapsingMesh, Kind};
 use crate::geometry::chunks::{for_chunks, map_chunks};
 use crate::monitor::{Cancelled, Monitor};
 
@@ -140,7 +140,7 @@ impl Region {
         } else {
             faces.iter().map(|&t| mesh.part_of[t as usize]).collect()
         };
-        let mut surface = Surface::new(&positions, &triangles, part_of, monitor)?;
+        let mut surface = CollapsingMesh::new(&positions, &triangles, part_of, monitor)?;
         add_quadrics(&mut surface, settings, monitor)?;
         for (vertex, &name) in surface.vertices.iter_mut().zip(&names) {
             if is_frozen[name as usize] {

@@ -108,7 +108,7 @@ struct Fan {
 /// Fans lie in one pool. A merged fan that outgrows its place moves to the end of the pool, which
 /// in all adds a few entries per collapse; nothing is ever freed.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Surface {
+pub(super) struct CollapsingMesh {
     pub(super) vertices: Vec<Vertex>,
     pub(super) faces: Vec<Face>,
     pub(super) edges: Vec<Edge>,
@@ -124,7 +124,7 @@ pub(super) struct Surface {
     merging: Vec<(u32, u32, u32)>,
 }
 
-impl Surface {
+impl CollapsingMesh {
     /// Counting sort of the triangles by vertex, and the edges between them. The triangles must
     /// differ from each other and each have three vertices. O(vertices + triangles).
     pub(super) fn new(
@@ -423,13 +423,13 @@ mod tests {
     use super::super::legality::link_condition;
     use super::*;
 
-    fn hexagon() -> Surface {
+    fn hexagon() -> CollapsingMesh {
         let positions = vec![Vector3::zeros(); 7];
         let triangles: Vec<_> = (1..7).map(|i| [0, i, i % 6 + 1]).collect();
-        Surface::new(&positions, &triangles, Vec::new(), &Monitor::silent()).unwrap()
+        CollapsingMesh::new(&positions, &triangles, Vec::new(), &Monitor::silent()).unwrap()
     }
 
-    fn collapse(surface: &mut Surface, kept: u32, removed: u32) {
+    fn collapse(surface: &mut CollapsingMesh, kept: u32, removed: u32) {
         let mut ring = Ring::new(surface.vertices.len());
         assert!(link_condition(surface, &mut ring, kept, removed, false));
         surface.collapse(&ring, [kept, removed], Vector3::x());

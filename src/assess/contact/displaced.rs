@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use super::{Contact, ContactSearch, Contacts, MIN_FACING, Sides, is_beside};
+use super::{Contact, ContactSearch, Contacts, MIN_FACING, NodesOnSurface, is_beside};
 use crate::geometry::Similarity;
 use crate::registration::WeightedNode;
 use crate::search::ClosestPoint;
@@ -20,7 +20,7 @@ impl ContactSearch<'_> {
         pose: &Similarity,
         contacts: &Contacts,
     ) -> Vec<Contact> {
-        let sides = Sides::new([self.source, self.target], pose, self.of_source);
+        let sides = NodesOnSurface::new([self.source, self.target], pose, self.of_source);
         let displaced = contacts.unmet.par_iter().filter_map(|&node| {
             let far = sides.contact(node, FARTHEST * self.reach, None, &mut None)?;
             (!sides.is_met_beneath(node, self.reach)).then_some(far)
@@ -37,7 +37,7 @@ impl ContactSearch<'_> {
         contacts: &Contacts,
         least: f64,
     ) -> Vec<Contact> {
-        let sides = Sides::new([self.source, self.target], pose, self.of_source);
+        let sides = NodesOnSurface::new([self.source, self.target], pose, self.of_source);
         let nodes = contacts.unmet.par_iter();
         nodes
             .filter_map(|&node| sides.astray(node, least))
@@ -45,7 +45,7 @@ impl ContactSearch<'_> {
     }
 }
 
-impl Sides<'_> {
+impl NodesOnSurface<'_> {
     /// A node and the way from the model's surface to it, if that is longer than `least` and begins off its borders.
     fn astray(&self, node: WeightedNode, least: f64) -> Option<Contact> {
         let Self { data, model, .. } = self;

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 pub use forming::{Forming, OtherResults, ShellStrain, ShellStress, StrainPoint, StressPoint};
 pub use formulation::{ShellControl, ShellFormulation};
 pub use index::IdIndex;
-pub use surface::{PartSummary, Selection, SelectionError, Surface};
+pub use surface::{ChosenMesh, PartSummary, Selection, SelectionError};
 pub(crate) use surface::{has_area, has_crossed_edges};
 pub use titles::RawTitles;
 

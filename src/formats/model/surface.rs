@@ -90,7 +90,7 @@ pub enum SelectionError {
 
 /// The triangles of the chosen elements and where they come from.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Surface {
+pub struct ChosenMesh {
     /// The mesh. Every vertex is used by a triangle, every triangle has area.
     pub mesh: TriMesh,
     /// For each vertex its node index.
@@ -125,7 +125,7 @@ impl Model {
     /// The triangle mesh of the chosen elements. Quads are cut along the shorter diagonal (equal
     /// ones from the first corner), concave ones along the inner one; of solids the faces used once are
     /// taken, facing outward. O(elements).
-    pub fn surface(&self, selection: &Selection) -> Result<Surface, SelectionError> {
+    pub fn surface(&self, selection: &Selection) -> Result<ChosenMesh, SelectionError> {
         self.build_surface(selection, &Monitor::silent())
     }
 
@@ -134,7 +134,7 @@ impl Model {
         &self,
         selection: &Selection,
         monitor: &Monitor,
-    ) -> Result<Surface, SelectionError> {
+    ) -> Result<ChosenMesh, SelectionError> {
         let chosen = self.chosen(selection)?;
         let mut builder = Builder::new(&self.nodes);
         for_chunks(self.shells.len(), monitor, |range| {
@@ -387,7 +387,7 @@ struct Builder<'a> {
     nodes: &'a Nodes,
     node_vertex: Vec<u32>,
     triangles: Vec<[u32; 3]>,
-    surface: Surface,
+    surface: ChosenMesh,
 }
 
 impl<'a> Builder<'a> {
@@ -396,7 +396,7 @@ impl<'a> Builder<'a> {
             nodes,
             node_vertex: vec![UNUSED; nodes.len()],
             triangles: Vec::new(),
-            surface: Surface::default(),
+            surface: ChosenMesh::default(),
         }
     }
 
@@ -444,7 +444,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Numbers the used nodes in the order of the file, so that neighbours stay neighbours.
-    fn finish(mut self, monitor: &Monitor) -> Result<Surface, SelectionError> {
+    fn finish(mut self, monitor: &Monitor) -> Result<ChosenMesh, SelectionError> {
         if self.triangles.is_empty() {
             return Err(SelectionError::Empty);
         }

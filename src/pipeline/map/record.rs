@@ -14,7 +14,8 @@ use super::warnings::{bare, warnings};
 use super::{MapFiles, MapRun, PlacedPart, PoseOrigin, ProbeRecord, ShownValue, covered_values};
 use crate::geometry::chunks::for_chunks;
 use crate::mapping::{
-    BackDifference, Distribution, Histogram, SourcePart, Status, distribution, histogram_distance,
+    BackDifference, Distribution, SourcePart, Status, ValueHistogram, distribution,
+    histogram_distance,
 };
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::forming_values::{FormingValue, LayerChoice, nominal_thickness};
@@ -383,7 +384,7 @@ fn pair_record(
     let (min, max) = (stamped.min.min(crash.min), stamped.max.max(crash.max));
     let [a, b] = values
         .each_ref()
-        .map(|side| Histogram::new(side.iter().copied(), min, max));
+        .map(|side| ValueHistogram::new(side.iter().copied(), min, max));
     PairRecord {
         layer,
         stamped: stamped.into(),

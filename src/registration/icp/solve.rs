@@ -22,7 +22,7 @@ pub(super) struct Row {
 /// Sum of weighted rows aᵀx ≈ r with three rotations, three translations and one scale.
 ///
 /// Lengths are divided by `length`, so that rotations and translations compare.
-pub(super) struct NormalEquations {
+pub(super) struct StepEquations {
     length: f64,
     matrix: SMatrix<f64, 7, 7>,
     rhs: SVector<f64, 7>,
@@ -48,7 +48,7 @@ pub(super) struct Solution {
     pub(super) scale: f64,
 }
 
-impl NormalEquations {
+impl StepEquations {
     /// Where the scale stands, behind rotation and translation.
     const SCALE: usize = 6;
 

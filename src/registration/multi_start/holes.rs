@@ -13,14 +13,14 @@ const TOLERANCE: f64 = 0.5;
 const SPACING: f64 = 0.5;
 
 /// The borders of a mesh's holes as points in its own frame.
-pub(crate) struct Holes {
+pub(crate) struct HoleBorders {
     /// Evenly spread over the length.
     samples: Vec<Point3>,
     /// The same borders more densely, to be asked.
     dense: PointTree,
 }
 
-impl Holes {
+impl HoleBorders {
     /// Holes of `surface`; `edge_length` is that of the pair. O(border edges).
     pub(crate) fn new(surface: &Surface, edge_length: f64) -> Self {
         // The trim need not be shared by two meshes of one sheet.
@@ -96,14 +96,14 @@ mod tests {
     #[test]
     fn a_hole_elsewhere_is_not_there_and_the_trim_does_not_count() {
         let (left, right) = (sheet(2), sheet(7));
-        let (a, b) = (Holes::new(&left, 1.0), Holes::new(&right, 1.0));
+        let (a, b) = (HoleBorders::new(&left, 1.0), HoleBorders::new(&right, 1.0));
         let still = Similarity::identity();
         assert_eq!(a.share_on(&a, &still, 1.0), Some(1.0));
         assert_eq!(a.share_on(&b, &still, 1.0), Some(0.0));
         let mut shifted = still;
         shifted.translation = Vector3::new(5.0, 0.0, 0.0);
         assert_eq!(a.share_on(&b, &shifted, 1.0), Some(1.0));
-        let whole = Holes::new(&sheet(99), 1.0);
+        let whole = HoleBorders::new(&sheet(99), 1.0);
         assert_eq!(whole.share_on(&a, &still, 1.0), None);
         assert_eq!(a.share_on(&whole, &still, 1.0), Some(0.0));
     }

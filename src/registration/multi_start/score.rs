@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::holes::Holes;
+use super::holes::HoleBorders;
 use crate::geometry::{Point3, Similarity, Vector3};
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::icp::{
@@ -49,8 +49,8 @@ pub(crate) struct PoseScorer<'a> {
     target: &'a Surface,
     source_samples: Vec<Sample>,
     target_samples: Vec<Sample>,
-    source_holes: Holes,
-    target_holes: Holes,
+    source_holes: HoleBorders,
+    target_holes: HoleBorders,
     floor: f64,
     /// Points farther away than this find no partner.
     reach: f64,
@@ -98,8 +98,8 @@ impl<'a> PoseScorer<'a> {
             target,
             source_samples: subsample(source, N_POINTS, monitor)?,
             target_samples: subsample(target, N_POINTS, monitor)?,
-            source_holes: Holes::new(source, edge),
-            target_holes: Holes::new(target, edge),
+            source_holes: HoleBorders::new(source, edge),
+            target_holes: HoleBorders::new(target, edge),
             floor: CURVED * natural_floor(source, target) + allowance,
             reach,
             far,

@@ -48,7 +48,7 @@ const CHUNK: usize = 256;
 
 /// A hole in grid units, of the data in the frame of its cloud.
 #[derive(Debug, Clone, Copy)]
-struct Hole {
+struct GridHole {
     center: Vector3,
     /// Mean distance of its border from its middle.
     radius: f64,
@@ -57,15 +57,15 @@ struct Hole {
 }
 
 /// The holes of both parts.
-pub(super) struct Holes {
-    data: Vec<Hole>,
-    model: Vec<Hole>,
+pub(super) struct GridHoles {
+    data: Vec<GridHole>,
+    model: Vec<GridHole>,
     /// The middles of the holes of the model.
     centers: PointTree,
     alike: Alike,
 }
 
-impl Holes {
+impl GridHoles {
     pub(super) fn of(
         cloud: &Cloud,
         (data, model): (&Surface, &Surface),
@@ -147,7 +147,7 @@ impl Holes {
     }
 
     /// The way from a hole of the data to the nearest one of the model that is as large.
-    fn off(&self, hole: &Hole, motion: &Motion32) -> Option<Vector3> {
+    fn off(&self, hole: &GridHole, motion: &Motion32) -> Option<Vector3> {
         let moved = motion.apply(&hole.center);
         let is_as_large = |i: u32| self.alike.are_as_large(hole, &self.model[i as usize]);
         let near = self.alike.near();
@@ -164,10 +164,10 @@ fn nearly(most: usize) -> usize {
 }
 
 /// The largest holes of a part, with their middles moved by `to_local`.
-fn holes(surface: &Surface, to_local: impl Fn(&Point3) -> Vector3) -> Vec<Hole> {
+fn holes(surface: &Surface, to_local: impl Fn(&Point3) -> Vector3) -> Vec<GridHole> {
     let mesh = surface.mesh();
     let found = surface.borders().iter().filter(|border| border.is_hole);
-    let mut found: Vec<Hole> = found
+    let mut found: Vec<GridHole> = found
         .filter_map(|border| {
             let center = to_local(&border.center);
             let (mut sum, mut length, mut area) = (0.0, 0.0, Vector3::zeros());
@@ -179,7 +179,7 @@ fn holes(surface: &Surface, to_local: impl Fn(&Point3) -> Vector3) -> Vec<Hole> 
                 // The sheet lies to the left of its border, so around a hole its normal turns the other way.
                 area -= a.cross(&b);
             }
-            Some(Hole {
+            Some(GridHole {
                 center,
                 radius: sum / length,
                 normal: area.try_normalize(0.0)?,
@@ -205,13 +205,13 @@ impl Alike {
         NEAR_EDGES * self.edge + NEAR_SHARE * self.diagonal
     }
 
-    fn are_as_large(&self, a: &Hole, b: &Hole) -> bool {
+    fn are_as_large(&self, a: &GridHole, b: &GridHole) -> bool {
         let larger = a.radius.max(b.radius);
         (a.radius - b.radius).abs() <= SAME_RADIUS * larger + RADIUS_EDGES * self.edge
     }
 
     /// The only hole of the data on each hole of the model that is as large, turned about its normal.
-    fn align_single(&self, only: &Hole, of_model: &[Hole], found: &mut Vec<First>) {
+    fn align_single(&self, only: &GridHole, of_model: &[GridHole], found: &mut Vec<First>) {
         for hole in of_model {
             if !self.are_as_large(only, hole) {
                 continue;
@@ -231,7 +231,7 @@ impl Alike {
     }
 
     /// Every two holes of the data on every two of the model that stand to each other as they do.
-    fn align_pairs(&self, of_data: &[Hole], of_model: &[Hole], found: &mut Vec<First>) {
+    fn align_pairs(&self, of_data: &[GridHole], of_model: &[GridHole], found: &mut Vec<First>) {
         let there: Vec<Two> = (0..of_model.len())
             .flat_map(|k| (0..of_model.len()).map(move |l| [k, l]))
             .filter_map(|two| self.two(of_model, two))
@@ -259,7 +259,7 @@ impl Alike {
     }
 
     /// Two holes of a part; `None` if they fix no pose.
-    fn two(&self, holes: &[Hole], [first, second]: [usize; 2]) -> Option<Two> {
+    fn two(&self, holes: &[GridHole], [first, second]: [usize; 2]) -> Option<Two> {
         if first == second {
             return None;
         }
@@ -300,7 +300,7 @@ impl Alike {
 /// Two holes of one part, the first one first.
 #[derive(Debug, Clone, Copy)]
 struct Two {
-    holes: [Hole; 2],
+    holes: [GridHole; 2],
     apart: f64,
     middle: Vector3,
     /// Of the normals with the way from the first hole to the second, and with each other.
@@ -331,8 +331,8 @@ mod tests {
     use super::*;
 
     /// Holes of two sizes in rows, some of them at one place.
-    fn rows(n: usize) -> Vec<Hole> {
-        let hole = |i: usize| Hole {
+    fn rows(n: usize) -> Vec<GridHole> {
+        let hole = |i: usize| GridHole {
             center: Vector3::new(0.1 * (i % 7) as f64, 0.05 * (i / 9) as f64, 0.0),
             radius: if i.is_multiple_of(3) { 0.02 } else { 0.03 },
             normal: Vector3::z(),
@@ -340,10 +340,10 @@ mod tests {
         (0..n).map(hole).collect()
     }
 
-    fn holes(n: usize) -> Holes {
+    fn holes(n: usize) -> GridHoles {
         let model = rows(n);
         let centers: Vec<Point3> = model.iter().map(|hole| hole.center.into()).collect();
-        Holes {
+        GridHoles {
             data: rows(60),
             centers: PointTree::build(centers),
             model,

@@ -22,7 +22,7 @@ use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::search::{FeatureGrid, GridSettings};
 use cloud::{Cloud, Motion32, area_samples};
-use holes::Holes;
+use holes::GridHoles;
 use rounds::{Ground, Round};
 use seeds::SeedCounts;
 
@@ -223,7 +223,7 @@ impl<'a> WideSearch<'a> {
                 monitor,
             )?;
         }
-        let find = |candidate: rounds::Candidate| WideFind {
+        let find = |candidate: rounds::TriedPose| WideFind {
             kind: seeds[candidate.seed as usize].kind,
             flipped: candidate.flipped,
             model_from_data: cloud.model_from_data(&candidate.motion, &self.grid),
@@ -250,7 +250,7 @@ impl<'a> WideSearch<'a> {
         cloud: &Cloud,
         monitor: &Monitor,
     ) -> Result<Vec<Similarity>, Cancelled> {
-        let holes = Holes::of(cloud, (self.data, self.model), &self.grid);
+        let holes = GridHoles::of(cloud, (self.data, self.model), &self.grid);
         let ground = self.ground(cloud);
         let first = holes.first_poses(monitor)?.into_iter();
         let survivors = rounds::run(ground, first, &HOLE_ROUNDS, monitor)?.into_iter();

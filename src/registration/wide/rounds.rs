@@ -33,7 +33,7 @@ pub(super) struct First {
 
 /// A pose on its way through the rounds.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Candidate {
+pub(super) struct TriedPose {
     pub(super) seed: u32,
     pub(super) flipped: bool,
     pub(super) motion: Motion32,
@@ -65,10 +65,10 @@ pub(super) fn run(
     first: impl Iterator<Item = First>,
     rounds: &[Round],
     monitor: &Monitor,
-) -> Result<Vec<Candidate>, Cancelled> {
-    let mut field: Vec<Candidate> = first
+) -> Result<Vec<TriedPose>, Cancelled> {
+    let mut field: Vec<TriedPose> = first
         .zip(0..)
-        .map(|(first, index)| Candidate {
+        .map(|(first, index)| TriedPose {
             seed: index,
             flipped: first.flipped,
             motion: first.motion,
@@ -95,7 +95,7 @@ pub(super) fn run(
     Ok(field)
 }
 
-fn advance(candidate: &mut Candidate, ground: Ground<'_>, round: &Round) {
+fn advance(candidate: &mut TriedPose, ground: Ground<'_>, round: &Round) {
     let Ground { cloud, grid, reach } = ground;
     let n_blocks = round.n_points.div_ceil(BLOCK).min(cloud.blocks.len());
     let sign = if candidate.flipped { -1.0 } else { 1.0 };
@@ -114,8 +114,8 @@ fn advance(candidate: &mut Candidate, ground: Ground<'_>, round: &Round) {
 }
 
 /// The first `keep` of `sorted` that do not lie near a better one.
-fn distinct(sorted: Vec<Candidate>, keep: usize, max_shift: f32) -> Vec<Candidate> {
-    let mut kept: Vec<Candidate> = Vec::with_capacity(keep);
+fn distinct(sorted: Vec<TriedPose>, keep: usize, max_shift: f32) -> Vec<TriedPose> {
+    let mut kept: Vec<TriedPose> = Vec::with_capacity(keep);
     for candidate in sorted {
         if kept.len() == keep {
             break;

@@ -3,7 +3,7 @@
 use super::{MAX_ROTATION_DEG, StepRules};
 use crate::geometry::{Rotation, Similarity, Vector3};
 use crate::registration::icp::correspondence::Correspondence;
-use crate::registration::icp::solve::{NormalEquations, Row, center_and_radius};
+use crate::registration::icp::solve::{Row, StepEquations, center_and_radius};
 
 /// Gauss–Newton step of Σ w ((p − q)·n)² about the centroid of the moved points (Chen and Medioni
 /// 1992), with the exact exponential of the rotation vector.
@@ -15,7 +15,7 @@ pub(super) fn step(
 ) -> Option<Similarity> {
     let kept = kept.iter().map(|&i| &pairs[i as usize]);
     let (center, radius) = center_and_radius(kept.clone().map(|c| (&c.moved, c.weight)))?;
-    let mut equations = NormalEquations::new(radius);
+    let mut equations = StepEquations::new(radius);
     for pair in kept {
         let arm = pair.moved - center;
         let normal = pair.matched_normal;

@@ -3,7 +3,7 @@
 use super::{MAX_ROTATION_DEG, StepRules};
 use crate::geometry::{Point3, Rotation, Similarity, Vector3};
 use crate::registration::icp::correspondence::Correspondence;
-use crate::registration::icp::solve::{NormalEquations, Row, center_and_radius};
+use crate::registration::icp::solve::{Row, StepEquations, center_and_radius};
 
 /// Step of Σ w ((p − q)·(nₚ + n_q))² where both sides turn by half of the rotation (Rusinkiewicz
 /// 2019, equation 10).
@@ -22,7 +22,7 @@ pub(super) fn step(
         .sum::<Vector3>()
         / total;
     let matched_center: Point3 = moved_center + offset;
-    let mut equations = NormalEquations::new(radius);
+    let mut equations = StepEquations::new(radius);
     for pair in kept {
         let p = pair.moved - moved_center;
         let q = pair.matched - matched_center;
