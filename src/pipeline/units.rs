@@ -128,11 +128,16 @@ fn doubt_of_sizes(parts: PerRole<&LoadedPart>) -> Option<String> {
     let factor = factor_left(parts).filter(|factor| is_set && !speaks_for(*factor, parts))?;
     let PerRole { crash, stamped } = parts.map(|part| {
         let words = part.units().map_or_else(String::new, KnownUnits::words);
-        format!("{} is in {words}", part.file_name())
+        format!("{} ({words})", part.file_name())
+    });
+    // The units of both files may be told as they follow from this, which is not what the stamped file says.
+    let lengths = PairUnits::of(parts.map(Some)).lengths;
+    let taken = lengths.map_or_else(String::new, |unit| {
+        format!(", so the lengths of both are taken to be in {unit}")
     });
     Some(format!(
-        "{stamped}, and {crash}; yet the sizes of the parts do not differ by the factor {} between these units, and \
-         none was applied",
+        "the units of {stamped} and {crash} differ by the factor {}, but the sizes of the parts do not; no factor was \
+         applied{taken}",
         tidy_factor(factor)
     ))
 }
