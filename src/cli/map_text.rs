@@ -38,9 +38,9 @@ pub(super) fn summary(record: &MapRecord, files: Option<&MapFiles>, failed: &[Pa
             line(
                 head,
                 format!(
-                    " mean {} (stamped {}), {} to {}",
+                    " mean {} ({}), {} to {}",
                     length(b.mean),
-                    length(a.mean),
+                    pair.stamped_value(&length(a.mean)),
                     length(b.min),
                     length(b.max)
                 ),

@@ -126,12 +126,17 @@ fn a_thickness_factor_counts_in_every_figure() {
         let mean = record["thickness"][side]["mean"].as_f64().unwrap();
         assert!((mean - 1.8).abs() < 1e-12, "{side}: {mean}");
     }
+    assert_eq!(record["thickness"]["stamped_factor"], 2.0);
+    assert!(record["plastic_strain"]["stamped_factor"].is_null());
+    let summary = String::from_utf8_lossy(&output.stdout);
+    assert!(summary.contains("(stamped × 2: 1.80)"), "{summary}");
     // Only the elements that have it are compared with their section.
     let warned = errors(&output);
     let told = "the mapped thickness is 1.80 times that of the crash elements";
     assert!(warned.contains(told), "{warned}");
     let page = std::fs::read_to_string(strip.path("m.html")).unwrap();
     assert!(page.contains("1.80") && !page.contains("0.900"));
+    assert!(page.contains("▲ stamped × 2, covered"));
 }
 
 #[test]

@@ -139,6 +139,9 @@ pub struct PairRecord {
     pub layer: Option<LayerChoice>,
     /// On the covered stamped elements.
     pub stamped: DistributionRecord,
+    /// The factor that the stamped values are multiplied by, as the mapped ones are, if there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stamped_factor: Option<f64>,
     /// On the mapped crash elements.
     pub crash: DistributionRecord,
     /// Half the sum of the differences of both histograms, 0 to 1.
@@ -146,6 +149,22 @@ pub struct PairRecord {
     /// Shares of the area in fifty equal bins from the smallest to the largest value of both, stamped
     /// and crash.
     pub histograms: [Vec<f64>; 2],
+}
+
+impl PairRecord {
+    /// What the stamped values are called: "stamped", or "stamped × 1.1".
+    pub fn stamped_word(&self) -> String {
+        self.stamped_factor.map_or_else(
+            || "stamped".to_owned(),
+            |factor| format!("stamped × {factor}"),
+        )
+    }
+
+    /// A stamped value beside the mapped one: "stamped 0.9", or "stamped × 1.1: 0.99".
+    pub fn stamped_value(&self, value: &str) -> String {
+        let colon = self.stamped_factor.map_or("", |_| ":");
+        format!("{}{colon} {value}", self.stamped_word())
+    }
 }
 
 /// An area-weighted distribution.
@@ -224,9 +243,7 @@ pub fn map_record(
     });
     let checks = &run.checks;
     monitor.check()?;
-    let thickness = checks
-        .thickness
-        .map(|pair| pair_record(None, pair, &thickness_values(run)));
+    let thickness = checks.thickness.map(|pair| thickness_pair(run, pair));
     monitor.check()?;
     let plastic_strain = checks
         .plastic_strain
@@ -354,6 +371,14 @@ fn thickness_values(run: &MapRun) -> BothSides {
     both_sides(run, on_source, |element| run.thickness(element))
 }
 
+fn thickness_pair(run: &MapRun, pair: (Distribution, Distribution)) -> PairRecord {
+    let factor = run.recipe.options.thickness_scale;
+    PairRecord {
+        stamped_factor: (factor != 1.0).then_some(factor),
+        ..pair_record(None, pair, &thickness_values(run))
+    }
+}
+
 fn thinning_values(run: &MapRun, flat: f64) -> BothSides {
     let thickness = thickness_values(run);
     thickness.map(|side| {
@@ -388,6 +413,7 @@ fn pair_record(
     PairRecord {
         layer,
         stamped: stamped.into(),
+        stamped_factor: None,
         crash: crash.into(),
         histogram_distance: histogram_distance(&a, &b),
         histograms: [a.shares, b.shares],

@@ -129,7 +129,7 @@ fn facts(record: &MapRecord, lengths: Lengths) -> Vec<[String; 3]> {
     ] {
         if let Some(pair) = pair {
             let change = change_text(change(pair.crash.mean, pair.stamped.mean));
-            let note = format!("{change} to stamped");
+            let note = format!("{change} to {}", pair.stamped_word());
             let mean = format!("{}{suffix}", length(pair.crash.mean));
             facts.push([name.to_owned(), mean, note]);
         }
@@ -361,6 +361,7 @@ impl<'a> Painter<'a> {
             on_target(element) - self.run.at_partner(element, on_source)
         })?;
         let figure = |png, title, caption| map_figure(png, SIZE, title, caption);
+        let stamped_word = pair.stamped_word();
         let [stamped, moved] = match self.run.sources.len() {
             1 => ["▲ Stamped part,", "before, moved by the pose."],
             _ => ["▲ Stamped parts,", "before, each moved by its pose."],
@@ -368,7 +369,10 @@ impl<'a> Painter<'a> {
         Ok(QuantityReport {
             name: name.to_owned(),
             rows: vec![
-                ("▲ stamped, covered".to_owned(), number_row(&pair.stamped)),
+                (
+                    format!("▲ {stamped_word}, covered"),
+                    number_row(&pair.stamped),
+                ),
                 ("■ crash, mapped".to_owned(), number_row(&pair.crash)),
             ],
             shares: pair.histograms.clone(),
@@ -380,7 +384,10 @@ impl<'a> Painter<'a> {
                 figure(apart, "Difference,", "mapped less the stamped element."),
             ],
             scales: [scale, signed],
-            sides: ["▲ stamped, where it is covered", "■ crash, mapped"],
+            sides: [
+                format!("▲ {stamped_word}, where it is covered"),
+                "■ crash, mapped".to_owned(),
+            ],
             difference: "difference, mapped less stamped",
         })
     }
@@ -436,7 +443,7 @@ impl<'a> Painter<'a> {
                 figure(apart, "Difference,", "this mapping less the other result."),
             ],
             scales: [scale, signed],
-            sides: ["this mapping", "the other result"],
+            sides: ["this mapping", "the other result"].map(str::to_owned),
             difference: "difference, this mapping less the other result",
         })
     }

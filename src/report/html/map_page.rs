@@ -29,7 +29,7 @@ pub struct QuantityReport {
     /// Colours of the first two pictures, and of the difference.
     pub scales: [ColorScale; 2],
     /// What the two histograms are of.
-    pub sides: [&'static str; 2],
+    pub sides: [String; 2],
     /// What the difference is.
     pub difference: &'static str,
 }

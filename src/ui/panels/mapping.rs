@@ -391,9 +391,9 @@ fn lines(record: &MapRecord, lengths: Lengths) -> Vec<String> {
     let mean = |name: &str, pair: &Option<PairRecord>, unit: &str| {
         let pair = pair.as_ref()?;
         Some(format!(
-            "{name}: mean {}{unit} (stamped {}{unit})",
+            "{name}: mean {}{unit} ({})",
             length(pair.crash.mean),
-            length(pair.stamped.mean)
+            pair.stamped_value(&format!("{}{unit}", length(pair.stamped.mean)))
         ))
     };
     lines.extend(mean("Thickness", &record.thickness, lengths.suffix()));

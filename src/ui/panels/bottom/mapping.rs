@@ -368,7 +368,14 @@ fn distributions_ui(
     let room = ui.available_width() - if is_low { CHART } else { 0.0 };
     let columns = fitting_columns(room);
     let numbers = |ui: &mut Ui| {
-        let title = format!("{}{of_layers}, by area", with_unit(state, by));
+        let of_thickness = matches!(by, ColorBy::Thickness | ColorBy::Thinning);
+        let thickness = result.record.thickness.as_ref().filter(|_| of_thickness);
+        let of_stamped = thickness
+            .and_then(|thickness| thickness.stamped_factor)
+            .map_or_else(String::new, |factor| {
+                format!(", stamped thickness × {factor}")
+            });
+        let title = format!("{}{of_layers}, by area{of_stamped}", with_unit(state, by));
         caption(ui, title);
         let palette = Palette::of(ui);
         let rows = [
