@@ -13,6 +13,7 @@ fn main() -> ExitCode {
     let first = std::env::args_os().nth(1);
     cli::refuse_unknown(first.as_deref());
     let cli = Cli::parse();
+    cli::refuse_window_options(&cli);
     // It may stand behind options.
     cli::refuse_unknown(cli.files.first().map(|file| file.as_os_str()));
     start_logging(cli.quiet);

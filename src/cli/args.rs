@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use super::UsageError;
 use super::map::MapArgs;
 use super::map_car::MapCarArgs;
 use super::numbers::{at_least_one, count, positive};
@@ -80,6 +81,20 @@ pub enum Task {
     Sample(SampleArgs),
     /// Measure reduction and matching as in the tables of the paper; or robustness, growth or mapping.
     Bench(BenchArgs),
+}
+
+impl Task {
+    /// How it reads files, if it reads parts.
+    pub(super) fn read(&self) -> Option<&ReadArgs> {
+        match self {
+            Self::Match(args) => Some(&args.input.read),
+            Self::Map(args) => Some(args.read()),
+            Self::MapCar(args) => Some(&args.read),
+            Self::Reduce(args) => Some(&args.read),
+            Self::Info(args) => Some(&args.read),
+            Self::Sample(_) | Self::Bench(_) => None,
+        }
+    }
 }
 
 /// `shapematch match`.
@@ -164,6 +179,33 @@ pub struct ReadArgs {
 }
 
 impl ReadArgs {
+    /// Tells folders that are not there: of an included file that is then not found, only the paths that were tried
+    /// would be told.
+    pub(super) fn warn_of_folders(&self) {
+        for folder in self.include_folder.iter().filter(|path| !path.is_dir()) {
+            let what = if folder.exists() {
+                "this is a file"
+            } else {
+                "no such folder"
+            };
+            log::warn!("--include-folder {}: {what}", folder.display());
+        }
+    }
+
+    /// Refuses what a project has its own of; `what` takes the options.
+    pub(super) fn refuse_beside_project(&self, what: &str) -> Result<(), UsageError> {
+        for (is_typed, option) in [
+            (!self.include_folder.is_empty(), "include-folder"),
+            (self.read_limit != ReadOptions::USUAL_LIMIT, "read-limit"),
+        ] {
+            if is_typed {
+                let text = format!("--{option} is for {what}; a project has its own");
+                return Err(UsageError(text));
+            }
+        }
+        Ok(())
+    }
+
     /// What the reader is told.
     pub fn options(&self) -> ReadOptions {
         ReadOptions {
@@ -282,7 +324,7 @@ pub struct SampleArgs {
     #[arg(long, conflicts_with_all = ["part", "variant", "seed", "bundled"])]
     pub realistic: bool,
     /// List parts and variants.
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["folder", "part", "variant", "seed", "bundled", "realistic"])]
     pub list: bool,
 }
 

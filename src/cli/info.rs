@@ -14,6 +14,7 @@ use crate::text::{counted, length};
 /// Reads the file and shows its contents.
 pub fn run(args: &InfoArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     if is_project(&args.input) {
+        args.read.refuse_beside_project("decks and meshes")?;
         return project::info(&args.input, args.json.as_deref());
     }
     check_outputs(

@@ -10,7 +10,9 @@ use super::args::ReadArgs;
 use super::map_choices::{
     HandName, KindName, MirrorName, RuleName, default_thickness, law, quantities,
 };
+use super::map_files::{check_order, warn_of_unread};
 use super::map_text::summary;
+use super::map_unused::{Beside, warn_of_unused};
 use super::numbers::{layers, percent, points_in_plane};
 use super::of_each::{LengthFactors, StressFactors, of_file, one_or_each};
 use super::placing::{Placed, place};
@@ -28,7 +30,7 @@ use crate::pipeline::load::{LoadSettings, LoadedPart, load};
 use crate::pipeline::map::{
     DefaultThickness, MapFile, MapFiles, MapOutput, MapRecipe, MapRecord, MapRun, OtherResult,
     PlacedPart, PoseOrigin, check_shells, deck_comments, element_table, elements_path, map_parts,
-    map_record, map_report, unmapped_sets, unread_line, write_mapping,
+    map_record, map_report, unmapped_sets, write_mapping,
 };
 use crate::pipeline::outputs::{Content, Target};
 use crate::pipeline::write_file::write_files_unless_cancelled;
@@ -110,19 +112,19 @@ pub(super) struct MapValues {
     /// plastic), or full, for everything. Between two layers, stresses, strains and plastic strain are
     /// interpolated; history variables, some of which are flags, are those of the nearest layer.
     #[arg(long, value_name = "LIST", default_value = "usual", value_parser = quantities)]
-    quantities: Quantities,
+    pub(super) quantities: Quantities,
     /// Layers of the crash elements, at most 100; from the section if not given.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = layers)]
-    layers: Option<usize>,
+    pub(super) layers: Option<usize>,
     /// Integration rule through the thickness of the crash elements; from the deck if not given. As in the solver,
     /// more than ten layers are equally spaced whatever the rule, and two Lobatto layers are Gauss points.
     #[arg(long, value_enum)]
-    rule: Option<RuleName>,
+    pub(super) rule: Option<RuleName>,
     /// Points in the plane of each layer; from the element formulation if not given.
     #[arg(long, value_name = "1|4", allow_negative_numbers = true, value_parser = points_in_plane)]
-    n_plane: Option<u8>,
+    pub(super) n_plane: Option<u8>,
     #[command(flatten)]
-    options: MapSettingArgs,
+    pub(super) options: MapSettingArgs,
 }
 
 /// What is written.
@@ -198,6 +200,23 @@ Examples:
 Exit status: 0 mapped, 1 failed or less mapped than --require asks for, 2 wrong usage, 3 mapped with a \
 pose that the match calls poor.";
 
+impl MapArgs {
+    pub(super) fn read(&self) -> &ReadArgs {
+        &self.choice.read
+    }
+
+    /// The options about values, and what their effect depends on.
+    pub(super) fn values_beside(&self) -> (&MapValues, Beside) {
+        let beside = Beside {
+            n_stamped: self.stamped.len(),
+            has_stress_factors: self.choice.stresses.is_given(),
+            has_stamped_law: self.choice.stamped_material.is_some(),
+            is_written: self.output.out.is_some(),
+        };
+        (&self.values, beside)
+    }
+}
+
 impl MapChoice {
     pub(super) fn hand(&self) -> Hand {
         if self.mirror == MirrorName::Free {
@@ -230,6 +249,8 @@ impl MapValues {
 /// Reads, matches where no pose is given, maps, writes, and prints the summary.
 pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     check_usage(args)?;
+    let (values, beside) = args.values_beside();
+    warn_of_unused(values, &beside);
     let monitor = progress::monitor(quiet);
     let mut inputs = vec![args.crash.clone()];
     let others = args.stamped.iter().chain(&args.output.compare);
@@ -425,30 +446,6 @@ fn finish(
     })
 }
 
-/// Refuses files whose forming results all lie on the side of the crash part: they were named in the other order.
-fn check_order(crash: &LoadedPart, stamped: &[LoadedPart]) -> anyhow::Result<()> {
-    // A crash deck may have thicknesses of its own.
-    let has_states = !crash.model.forming.is_empty();
-    if !has_states || stamped.iter().any(|part| part.model.has_results()) {
-        return Ok(());
-    }
-    let names: Vec<String> = stamped.iter().map(LoadedPart::file_name).collect();
-    let text = format!(
-        "the forming results are in {}, named first as the crash model, and there are none in {}; name the crash \
-         model first: shapematch map CRASH STAMPED",
-        crash.file_name(),
-        names.join(", ")
-    );
-    Err(UsageError(text).into())
-}
-
-/// Tells what of the files could not be read.
-fn warn_of_unread<'a>(parts: impl Iterator<Item = &'a LoadedPart>) {
-    for line in parts.filter_map(unread_line) {
-        log::warn!("{line}");
-    }
-}
-
 /// Refuses options that do not go together.
 fn check_usage(args: &MapArgs) -> anyhow::Result<()> {
     let refuse = |text: String| Err(UsageError(text).into());
@@ -494,6 +491,9 @@ fn check_usage(args: &MapArgs) -> anyhow::Result<()> {
             "--mirror free is found by a match; a given pose is mirrored at yz, zx or xy"
                 .to_owned(),
         );
+    }
+    if args.choice.mirror == MirrorName::Free && args.choice.hand == HandName::Either {
+        return refuse("--mirror free takes the opposite hand; omit --hand either".to_owned());
     }
     if args.choice.mirror.motion().is_some() && !has_pose {
         let what = "--mirror mirrors a given pose (--pose, --project, --identity)";

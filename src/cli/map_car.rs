@@ -10,6 +10,7 @@ use clap::{ArgAction, Args};
 use super::args::ReadArgs;
 use super::map::MapValues;
 use super::map_choices::{HandName, default_thickness};
+use super::map_unused::{Beside, warn_of_unused};
 use super::of_each::{LengthFactors, StressFactors, of_file};
 use super::{
     NamedFiles, UsageError, check_outputs, is_stdout, json_target, print, progress, takes_stdout,
@@ -51,7 +52,7 @@ pub struct MapCarArgs {
     #[command(flatten)]
     stresses: StressFactors,
     #[command(flatten)]
-    read: ReadArgs,
+    pub(super) read: ReadArgs,
     /// 16 columns a number instead of 10.
     #[arg(
         long,
@@ -98,6 +99,13 @@ pub fn run(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
 fn map_all(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     args.lengths.check(args.stamped.len())?;
     let stress_factors = args.stresses.checked(args.stamped.len())?;
+    let beside = Beside {
+        n_stamped: args.stamped.len(),
+        has_stress_factors: args.stresses.is_given(),
+        has_stamped_law: false,
+        is_written: true,
+    };
+    warn_of_unused(&args.values, &beside);
     let monitor = progress::monitor(quiet);
     let read = args.read.options();
     let settings = |role, length_factor| LoadSettings {

@@ -11,7 +11,9 @@ mod map;
 mod map_bench;
 mod map_car;
 mod map_choices;
+mod map_files;
 mod map_text;
+mod map_unused;
 mod match_text;
 mod matching;
 mod numbers;
@@ -39,7 +41,7 @@ use anyhow::Context as _;
 use serde::Serialize;
 
 pub use self::terminal::printable;
-pub use self::unknown::refuse_unknown;
+pub use self::unknown::{refuse_unknown, refuse_window_options};
 use crate::pipeline::PipelineError;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::outputs::{Content, Target, check_targets, json_text};
@@ -59,6 +61,9 @@ fn warn_of_tools(stamped: &LoadedPart) {
 
 /// Runs one subcommand.
 pub fn run(task: &Task, quiet: bool) -> anyhow::Result<ExitCode> {
+    if let Some(read) = task.read() {
+        read.warn_of_folders();
+    }
     match task {
         Task::Match(args) => matching::run(args, quiet),
         Task::Map(args) => map::run(args, quiet),

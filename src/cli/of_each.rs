@@ -59,6 +59,11 @@ pub(super) struct StressFactors {
 }
 
 impl StressFactors {
+    /// Whether there are any.
+    pub(super) fn is_given(&self) -> bool {
+        !self.stress_factor.is_empty()
+    }
+
     /// The factors; more or fewer of them than files are refused.
     pub(super) fn checked(&self, n_files: usize) -> anyhow::Result<&[f64]> {
         one_or_each(self.stress_factor.len(), "stress factor", n_files)?;

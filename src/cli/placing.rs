@@ -177,7 +177,9 @@ fn on_found_parts(
     let mut poses = Vec::new();
     for part in stamped {
         let parts = PerRole::new(crash, part);
-        let Some(found) = find_parts(parts, recipe, &Similarity::identity(), monitor)? else {
+        let found = find_parts(parts, recipe, &Similarity::identity(), monitor);
+        let found = found.with_context(|| format!("cannot match {}", part.path.display()))?;
+        let Some(found) = found else {
             warn_of_unit(parts, monitor)?;
             return Ok(None);
         };

@@ -5,9 +5,9 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use super::args::MatchArgs;
-use super::recipe::{Asked, take_typed};
+use super::recipe::{Asked, take_typed, warn_of_unused};
 use super::{UsageError, check_outputs, json_target, print, takes_stdout, write_json};
-use crate::formats::{Disk, FileHash, ReadOptions, Selection};
+use crate::formats::{Disk, FileHash, Selection};
 use crate::geometry::Similarity;
 use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
@@ -79,7 +79,7 @@ fn is_part_chosen(project: &Project, crash: &PartEntry, is_same: bool) -> bool {
 /// Refuses options about what a project has its own of.
 fn refuse_own(args: &MatchArgs) -> Result<(), UsageError> {
     let (input, typed) = (&args.input, &args.settings);
-    let usual = ReadOptions::USUAL_LIMIT;
+    input.read.refuse_beside_project("two files")?;
     for (is_typed, option) in [
         (input.crash_part.is_some(), "crash-part"),
         (input.stamped_part.is_some(), "stamped-part"),
@@ -87,8 +87,6 @@ fn refuse_own(args: &MatchArgs) -> Result<(), UsageError> {
         (input.stamped_units.is_some(), "stamped-units"),
         (input.crash_length_factor != 1.0, "crash-length-factor"),
         (input.stamped_length_factor != 1.0, "stamped-length-factor"),
-        (!input.read.include_folder.is_empty(), "include-folder"),
-        (input.read.read_limit != usual, "read-limit"),
         (typed.value("method").is_some(), "method"),
         (!typed.start_poses.is_empty(), "start-pose"),
     ] {
@@ -146,6 +144,7 @@ fn begin(project: &Project, args: &MatchArgs) -> anyhow::Result<Begin> {
         begin.alternative = result.alternative;
     }
     take_typed(&mut begin.recipe, args)?;
+    warn_of_unused(&begin.recipe, args);
     begin.recipe.settings.check().map_err(PipelineError::from)?;
     Ok(begin)
 }

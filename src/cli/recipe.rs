@@ -38,6 +38,7 @@ pub fn asked(args: &MatchArgs) -> anyhow::Result<Asked> {
     let input = &args.input;
     let mut recipe = recipe(args)?;
     let current = start_poses(&args.settings, &mut recipe)?;
+    warn_of_unused(&recipe, args);
     let level = |own: Option<usize>| own.or(recipe.max_triangles);
     Ok(Asked {
         crash: load_settings(input, Role::Crash),
@@ -90,6 +91,20 @@ pub(super) fn take_typed(recipe: &mut MatchRecipe, args: &MatchArgs) -> anyhow::
         recipe.settings.hand = Hand::Either;
     }
     Ok(())
+}
+
+/// Tells the settings that were typed and have no effect beside the others.
+pub(super) fn warn_of_unused(recipe: &MatchRecipe, args: &MatchArgs) {
+    let typed = args.settings.typed.iter();
+    let unused = typed.filter_map(|(option, _)| Some((option, setting(option)?.unused(recipe)?)));
+    for (option, reason) in unused {
+        log::warn!("--{option} has no effect. {reason}");
+    }
+    let levels = [args.input.crash_triangles, args.input.stamped_triangles];
+    let is_typed = args.settings.value("triangles").is_some();
+    if is_typed && levels.iter().all(Option::is_some) {
+        log::warn!("--triangles has no effect beside --crash-triangles and --stamped-triangles");
+    }
 }
 
 /// Takes the start poses that were typed; the value is the pose the stamped part starts from.

@@ -61,6 +61,11 @@ impl FromArgMatches for SettingArgs {
 pub struct MapSettingArgs(Vec<(&'static str, Value)>);
 
 impl MapSettingArgs {
+    /// Whether an option was typed.
+    pub fn is_typed(&self, option: &str) -> bool {
+        self.0.iter().any(|(name, _)| *name == option)
+    }
+
     /// The usual choices with what was typed.
     pub fn options(&self) -> MapOptions {
         let mut options = MapOptions::default();

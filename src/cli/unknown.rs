@@ -22,6 +22,18 @@ pub fn refuse_unknown(word: Option<&OsStr>) {
     }
 }
 
+/// Ends the program with wrong usage if a command is named beside an option of the window, which would be ignored.
+pub fn refuse_window_options(cli: &Cli) {
+    let options = [(cli.example, "--example"), (cli.realistic, "--realistic")];
+    let given = options.into_iter().find(|(is_given, _)| *is_given);
+    if let Some((_, option)) = given.filter(|_| cli.command.is_some()) {
+        let text = format!("{option} opens the window and goes with no command");
+        Cli::command()
+            .error(ErrorKind::ArgumentConflict, text)
+            .exit();
+    }
+}
+
 fn unknown(word: &OsStr) -> Option<String> {
     let path = Path::new(word);
     let command = Cli::command();

@@ -92,6 +92,14 @@ pub enum PipelineError {
         /// Id of the crash part.
         part: u64,
     },
+    /// A part without shells.
+    #[error("{error}: {path:?}")]
+    NoShells {
+        /// Which of both parts it is.
+        error: MappingError,
+        /// Its file.
+        path: PathBuf,
+    },
     /// Stamped files without what is to be mapped.
     #[error("none of the results that were asked for are in {0}")]
     NoResults(String),

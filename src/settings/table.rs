@@ -46,7 +46,7 @@ pub static SETTINGS: [Setting; 26] = [
         help: "Where the match starts from; the default is current if one --start-pose is given",
         group: Group::Method,
         domain: Domain::Choice(StartMethod::all_words),
-        access: at!(settings.starts.method),
+        access: at!(settings.starts.method, not_searched),
     },
     Setting {
         field: "settings.starts.angle_segment_deg",
@@ -66,7 +66,7 @@ pub static SETTINGS: [Setting; 26] = [
         help: "Try both directions of the mean normal",
         group: Group::Starts,
         domain: Domain::Switch,
-        access: at!(settings.starts.both_signs),
+        access: at!(settings.starts.both_signs, not_searched),
     },
     Setting {
         field: "settings.starts.wide_search",
@@ -77,7 +77,7 @@ pub static SETTINGS: [Setting; 26] = [
             aligned; the best are further starts",
         group: Group::Starts,
         domain: Domain::Switch,
-        access: at!(settings.starts.wide_search),
+        access: at!(settings.starts.wide_search, not_wide),
     },
     Setting {
         field: "settings.starts.poses",
@@ -98,7 +98,7 @@ pub static SETTINGS: [Setting; 26] = [
         help: "The part whose nodes are paired with the other part's surface",
         group: Group::Correspondences,
         domain: Domain::Choice(DataSide::all_words),
-        access: at!(settings.data_side),
+        access: at!(settings.data_side, not_searched),
     },
     Setting {
         field: "settings.pair_with",
@@ -108,7 +108,7 @@ pub static SETTINGS: [Setting; 26] = [
         help: "What a data point is paired with",
         group: Group::Correspondences,
         domain: Domain::Choice(PairWith::all_words),
-        access: at!(settings.pair_with),
+        access: at!(settings.pair_with, not_searched),
     },
     Setting {
         field: "settings.selection",
@@ -118,7 +118,7 @@ pub static SETTINGS: [Setting; 26] = [
         help: "Which pairs are kept",
         group: Group::Correspondences,
         domain: Domain::Choice(PairSelection::all_words),
-        access: at!(settings.selection),
+        access: at!(settings.selection, not_searched),
     },
     Setting {
         field: "settings.selection.lambda",
@@ -158,7 +158,7 @@ pub static SETTINGS: [Setting; 26] = [
         help: "The residual that is minimised",
         group: Group::Correspondences,
         domain: Domain::Choice(Metric::all_words),
-        access: at!(settings.metric),
+        access: at!(settings.metric, not_searched),
     },
     Setting {
         field: "settings.motion",
@@ -188,7 +188,7 @@ pub static SETTINGS: [Setting; 26] = [
         help: "Maximum angle between the normals of a pair; 180° accepts all pairs",
         group: Group::Correspondences,
         domain: number(Unit::Degrees, limits::NORMAL_ANGLE_DEG, 0.5),
-        access: at!(settings.max_normal_angle_deg),
+        access: at!(settings.max_normal_angle_deg, not_searched),
     },
     Setting {
         field: "settings.allowance",
@@ -219,7 +219,7 @@ pub static SETTINGS: [Setting; 26] = [
             where it can be distinguished from a shift",
         group: Group::Correspondences,
         domain: Domain::Switch,
-        access: at!(settings.remove_offset),
+        access: at!(settings.remove_offset, not_searched),
     },
     Setting {
         field: "settings.search",
@@ -229,7 +229,7 @@ pub static SETTINGS: [Setting; 26] = [
         help: "How the starts are searched",
         group: Group::Search,
         domain: Domain::Choice(Search::all_words),
-        access: at!(settings.search),
+        access: at!(settings.search, not_searched),
     },
     Setting {
         field: "settings.n_coarse_points",
@@ -239,7 +239,7 @@ pub static SETTINGS: [Setting; 26] = [
         help: "Data points of the first stage",
         group: Group::Search,
         domain: Domain::Count(limits::COUNT),
-        access: at!(settings.n_coarse_points),
+        access: at!(settings.n_coarse_points, not_searched),
     },
     Setting {
         field: "settings.n_refine_points",
@@ -249,7 +249,7 @@ pub static SETTINGS: [Setting; 26] = [
         help: "Data points of the second stage",
         group: Group::Search,
         domain: Domain::Count(limits::COUNT),
-        access: at!(settings.n_refine_points),
+        access: at!(settings.n_refine_points, not_searched),
     },
     Setting {
         field: "settings.max_iterations",
@@ -259,7 +259,7 @@ pub static SETTINGS: [Setting; 26] = [
         help: "Maximum iterations per run",
         group: Group::Search,
         domain: Domain::Count(limits::COUNT),
-        access: at!(settings.max_iterations),
+        access: at!(settings.max_iterations, not_searched),
     },
     Setting {
         field: "settings.motion_tolerance",
@@ -269,7 +269,7 @@ pub static SETTINGS: [Setting; 26] = [
         help: "Converged when no bounding-box corner moves by more than this fraction of an edge length",
         group: Group::Search,
         domain: number(Unit::EdgeLengths, limits::MOTION_TOLERANCE, 1e-4),
-        access: at!(settings.motion_tolerance),
+        access: at!(settings.motion_tolerance, not_searched),
     },
     Setting {
         field: "max_triangles",
@@ -289,7 +289,7 @@ pub static SETTINGS: [Setting; 26] = [
         help: "Refine the best pose on the full meshes",
         group: Group::Search,
         domain: Domain::Switch,
-        access: at!(settings.refine_on_full),
+        access: at!(settings.refine_on_full, not_searched),
     },
 ];
 
@@ -302,8 +302,20 @@ const fn number(unit: Unit, range: RangeInclusive<f64>, step: f64) -> Domain {
     Domain::Number { unit, range, step }
 }
 
+fn not_searched(recipe: &MatchRecipe) -> Option<&'static str> {
+    let is_searched = recipe.settings.method != Method::Umeyama;
+    (!is_searched).then_some("Applies only to methods that search the pose")
+}
+
+fn not_wide(recipe: &MatchRecipe) -> Option<&'static str> {
+    let is_coarse = recipe.settings.search == Search::CoarseToFine;
+    let of_search = (!is_coarse).then_some("Applies only to the search from coarse to fine");
+    not_searched(recipe).or(of_search)
+}
+
 fn not_rotated(recipe: &MatchRecipe) -> Option<&'static str> {
     let method = recipe.settings.starts.method;
     let is_rotated = matches!(method, StartMethod::SurfaceNormals | StartMethod::All);
-    (!is_rotated).then_some("Applies only to starts from surface normals")
+    let of_starts = (!is_rotated).then_some("Applies only to starts from surface normals");
+    not_searched(recipe).or(of_starts)
 }

@@ -644,3 +644,60 @@ fn values_that_cannot_be_say_what_they_must_be() {
     let message = text(&output.stderr);
     assert!(message.contains("it is a file, not a folder"), "{message}");
 }
+
+#[test]
+fn options_without_effect_and_folders_that_are_not_there_are_told() {
+    let pair = Pair::bundled();
+    let (crash, stamped) = (pair.path("crash.k.gz"), pair.path("stamped.dynain.gz"));
+    let (page, project) = (pair.path("page.html.gz"), pair.path("a.shapematch"));
+    std::fs::write(&project, "{}").unwrap();
+    for (words, status, told) in [
+        (
+            &["info", &crash, "--include-folder", "no-such-folder"][..],
+            0,
+            "--include-folder no-such-folder: no such folder",
+        ),
+        (
+            &[
+                "map",
+                &crash,
+                &stamped,
+                "--identity",
+                "--quantities",
+                "thickness",
+                "--rule",
+                "gauss",
+            ],
+            1,
+            "--rule has no effect: nothing that lies at layers is mapped",
+        ),
+        (
+            &["map", &crash, &stamped, "--report", &page],
+            2,
+            "--report is not written packed",
+        ),
+        (
+            &[
+                "map", &crash, &stamped, "--mirror", "free", "--hand", "either",
+            ],
+            2,
+            "omit --hand either",
+        ),
+        (
+            &["info", &project, "--read-limit", "1"],
+            2,
+            "--read-limit is for decks and meshes",
+        ),
+        (&["sample", "folder", "--list"], 2, "cannot be used with"),
+        (
+            &["--example", "info", &crash],
+            2,
+            "--example opens the window",
+        ),
+    ] {
+        let output = shapematch(words);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(status), "{words:?}: {message}");
+        assert!(message.contains(told), "{words:?}: {message}");
+    }
+}

@@ -196,7 +196,8 @@ fn files_in_the_other_order_are_told() {
 #[test]
 fn a_material_law_that_does_not_exist_is_named() {
     let pair = Pair::new(&crash(2, STEEL), &stamped(2, &stresses(1..=2)));
-    let told = |law| errors(&pair.map(&["--stamped-material", law])).to_owned();
+    let full = ["--quantities", "full", "--stamped-material"];
+    let told = |law| errors(&pair.map(&[&full[..], &[law]].concat())).to_owned();
     assert!(
         told("foo").contains("--stamped-material FOO"),
         "{}",

@@ -26,15 +26,17 @@ const PEAKS: f64 = 0.01;
 /// An error if a part has no shells, which a match would not show.
 pub fn check_shells<'a>(
     crash: &LoadedPart,
-    mut stamped: impl Iterator<Item = &'a LoadedPart>,
+    stamped: impl Iterator<Item = &'a LoadedPart>,
 ) -> Result<(), PipelineError> {
-    if !crash.has_shells() {
-        return Err(MappingError::EmptyTarget.into());
+    let mut all = std::iter::once((crash, MappingError::EmptyTarget))
+        .chain(stamped.map(|part| (part, MappingError::EmptySource)));
+    match all.find(|(part, _)| !part.has_shells()) {
+        Some((part, error)) => Err(PipelineError::NoShells {
+            error,
+            path: part.path.clone(),
+        }),
+        None => Ok(()),
     }
-    if !stamped.all(LoadedPart::has_shells) {
-        return Err(MappingError::EmptySource.into());
-    }
-    Ok(())
 }
 
 /// An error if initial stresses of one of the parts are read in element axes (`LISPSID` on

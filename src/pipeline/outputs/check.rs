@@ -11,7 +11,7 @@ use crate::report::cards::file_name_fault;
 /// What a file is meant to hold, as far as its name is concerned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Content {
-    /// Text for people or programs; any name will do.
+    /// Text for people or programs; any name will do but that of a packed file.
     Text,
     /// A deck, which other decks include by its name.
     Deck,
@@ -66,6 +66,14 @@ pub enum Refusal {
         "{name} is written as a keyword file; give it a name that ends in .k, not in that of another format: {path:?}"
     )]
     OtherFormat {
+        /// Name of the output.
+        name: String,
+        /// Where it was to go.
+        path: PathBuf,
+    },
+    /// The name is that of a packed file.
+    #[error("{name} is not written packed; give it a name without .gz: {path:?}")]
+    Packed {
         /// Name of the output.
         name: String,
         /// Where it was to go.
@@ -134,8 +142,11 @@ pub fn overwritten_inputs(targets: &[Target], inputs: &[PathBuf]) -> Vec<Refusal
 
 fn name_fault(target: &Target) -> Option<Refusal> {
     let (name, path) = (target.name.clone(), target.path.clone());
+    let is_packed = path
+        .extension()
+        .is_some_and(|of| of.eq_ignore_ascii_case("gz"));
     let is_deck = match target.content {
-        Content::Text => return None,
+        Content::Text => return is_packed.then_some(Refusal::Packed { name, path }),
         Content::Deck if Format::of_name(&path).is_some_and(|of| of != Format::Keyword) => {
             return Some(Refusal::OtherFormat { name, path });
         }
@@ -146,11 +157,7 @@ fn name_fault(target: &Target) -> Option<Refusal> {
         },
     };
     let file_name = path.file_name()?;
-    if is_deck
-        && Path::new(file_name)
-            .extension()
-            .is_some_and(|of| of.eq_ignore_ascii_case("gz"))
-    {
+    if is_deck && is_packed {
         return Some(Refusal::OtherFormat { name, path });
     }
     let fault = file_name_fault(&file_name.to_string_lossy()).filter(|_| is_deck)?;
@@ -278,6 +285,7 @@ mod tests {
             ("", Content::Text, "is a folder"),
             ("a.xyz", Content::Mesh, "ends in .k"),
             ("a.k.gz", Content::Mesh, "ends in .k"),
+            ("a.json.gz", Content::Text, "without .gz"),
             ("$a.k", Content::Deck, "begins with $"),
             ("*a.k", Content::Mesh, "begins with *"),
         ];
