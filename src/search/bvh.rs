@@ -5,8 +5,9 @@ use std::sync::Arc;
 use glam::{BVec4A, Vec4};
 
 use super::cones::{ConeFilter, add_cones};
-use super::pack::TrianglePack;
+use super::pack::{TrianglePack, rename};
 use super::traverse::{Admit, All, Nearest, OUT_OF_SIGHT, Walk};
+use super::tree_items::TreeItems;
 use super::wide::{LocalFrame, Node, Query, WideTree, box_around};
 use super::{
     ClosestPoint, NormalFilter, SurfaceHit, TrianglePoint, brute, closest_point_on_triangle,
@@ -44,7 +45,16 @@ impl Bvh {
         let frame = LocalFrame::around(&mesh.aabb());
         let corners = |t: u32| mesh.corners(t as usize).map(|p| frame.to_local(&p));
         let box_of = |t: u32| box_around(&corners(t));
-        let mut tree = WideTree::build(mesh.n_triangles(), box_of, corners, monitor)?;
+        let mut tree: WideTree<TrianglePack> = match TreeItems::of(&mesh, &frame, monitor)? {
+            None => WideTree::build(mesh.n_triangles(), box_of, corners, monitor)?,
+            Some(items) => {
+                let box_of = |item: u32| items.box_of(item);
+                let of_item = |item: u32| corners(items.triangle_of[item as usize]);
+                let mut tree = WideTree::build(items.len(), box_of, of_item, monitor)?;
+                rename(&mut tree.packs, &items.triangle_of);
+                tree
+            }
+        };
         add_cones(&mut tree, monitor)?;
         Ok(Self { mesh, frame, tree })
     }

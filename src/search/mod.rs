@@ -18,6 +18,7 @@ mod pieces;
 mod points;
 mod ray;
 mod traverse;
+mod tree_items;
 mod triangle;
 mod wide;
 

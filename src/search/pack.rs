@@ -124,6 +124,10 @@ impl Pack for TrianglePack {
     fn ids(&self) -> &[u32; WIDTH] {
         &self.ids
     }
+
+    fn ids_mut(&mut self) -> &mut [u32; WIDTH] {
+        &mut self.ids
+    }
 }
 
 /// Squared length of an edge to divide by: without length, whatever is divided is zero too.
@@ -182,12 +186,11 @@ pub(super) struct PointPack {
     ids: [u32; WIDTH],
 }
 
-impl PointPack {
-    /// Replaces every index by what `new_ids` has in its place.
-    pub(super) fn rename(&mut self, new_ids: &[u32]) {
-        for id in self.ids.iter_mut().filter(|id| **id != u32::MAX) {
-            *id = new_ids[*id as usize];
-        }
+/// Replaces every index in the packs by what `new_ids` has in its place.
+pub(super) fn rename<P: Pack>(packs: &mut [P], new_ids: &[u32]) {
+    let ids = packs.iter_mut().flat_map(Pack::ids_mut);
+    for id in ids.filter(|id| **id != u32::MAX) {
+        *id = new_ids[*id as usize];
     }
 }
 
@@ -222,5 +225,9 @@ impl Pack for PointPack {
     #[inline]
     fn ids(&self) -> &[u32; WIDTH] {
         &self.ids
+    }
+
+    fn ids_mut(&mut self) -> &mut [u32; WIDTH] {
+        &mut self.ids
     }
 }

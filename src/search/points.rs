@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::pack::PointPack;
+use super::pack::{PointPack, rename};
 use super::traverse::{All, Nearest, OUT_OF_SIGHT, Walk};
 use super::wide::{LocalFrame, WideTree, box_around};
 use crate::geometry::{Aabb, Point3};
@@ -51,9 +51,7 @@ impl PointTree {
         let box_of = |i: u32| box_around(&[item(i)]);
         let mut tree = WideTree::<PointPack>::build(finite.len(), box_of, item, monitor)?;
         if finite.len() < points.len() {
-            for pack in &mut tree.packs {
-                pack.rename(&finite);
-            }
+            rename(&mut tree.packs, &finite);
         }
         Ok(Self {
             points,

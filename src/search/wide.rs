@@ -59,6 +59,9 @@ pub(super) trait Pack: Send + Sync {
     fn distance_sq(&self, query: &Query) -> Vec4;
     /// The items' indices.
     fn ids(&self) -> &[u32; WIDTH];
+
+    /// The same, to be changed.
+    fn ids_mut(&mut self) -> &mut [u32; WIDTH];
 }
 
 /// A query point, each coordinate repeated for the four places.
