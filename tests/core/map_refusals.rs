@@ -320,3 +320,32 @@ fn of_two_files_none_is_written_or_counted_where_one_cannot_be() {
     assert!(!text.contains("thicknesses"), "{text}");
     assert!(!pair.path("out.k").exists());
 }
+
+#[test]
+fn results_of_one_sheet_in_two_files_are_told_and_one_deck_holds_both() {
+    let thickness = stamped(2, "");
+    let card = "             0.9".repeat(4) + "\n";
+    let states = stamped(2, &stresses(1..=2));
+    let states = states
+        .replace("SHELL_THICKNESS", "SHELL")
+        .replace(&card, "");
+    let pair = Pair::new(&crash(2, ""), &thickness);
+    let both = "*KEYWORD\n*INCLUDE\nstates.k\n*INCLUDE\nstamped.dynain\n*END\n";
+    for (name, deck) in [("states.k", &*states), ("both.k", both)] {
+        std::fs::write(pair.path(name), deck).unwrap();
+    }
+    let map = |stamped: &[&str]| {
+        let options = ["--identity", "--quantities", "thickness,stress"];
+        let options = [&options[..], &["--out", "out.k", "--write", "part"]].concat();
+        pair.shapematch(&[&["map", "crash.k"], stamped, &options].concat())
+    };
+    let told = "hold the same elements with different results";
+    let two = map(&["stamped.dynain", "states.k"]);
+    assert!(errors(&two).contains(told), "{}", errors(&two));
+    let one = map(&["both.k"]);
+    assert!(one.status.success(), "{}", errors(&one));
+    assert!(!errors(&one).contains(told), "{}", errors(&one));
+    let deck = std::fs::read_to_string(pair.path("out.k")).unwrap();
+    assert!(deck.contains("INITIAL_STRESS_SHELL"), "{deck}");
+    assert!(deck.contains("9.00000000E-01"), "{deck}");
+}

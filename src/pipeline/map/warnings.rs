@@ -69,6 +69,7 @@ pub(super) fn warnings(
     warnings.extend(sources.filter_map(|(placed, shells)| without_results(placed, shells)));
     let sources = stamped.iter().zip(&run.sources);
     warnings.extend(sources.flat_map(|(placed, source)| left_out(placed, source)));
+    warnings.extend(in_two_files(run, stamped));
     warnings.extend(of_elements(run));
     warnings.extend(other_unit(run, stamped));
     warnings.extend(stress_units(run, crash, stamped));
@@ -111,6 +112,39 @@ pub(super) fn warnings(
         warnings.extend(old_states_warning(run, files));
     }
     warnings
+}
+
+/// Stamped files that hold the same elements, each with results that the other lacks, such as thickness and stresses:
+/// an element takes its values from one file.
+fn in_two_files(run: &MapRun, stamped: &[PlacedPart<'_>]) -> Vec<String> {
+    let results = |source: &SourcePart| {
+        let has_thickness =
+            (0..source.thickness.len()).any(|element| source.mean_thickness(element).is_finite());
+        let has_states = source.states.n_present() > 0;
+        [has_thickness, has_states, source.strains.n_present() > 0]
+    };
+    let files: Vec<_> = (stamped.iter().zip(&run.sources))
+        .map(|(placed, source)| (placed.part, source, results(source)))
+        .collect();
+    let mut told = Vec::new();
+    for (number, (part, source, own)) in files.iter().enumerate() {
+        for (other_part, other, theirs) in &files[number + 1..] {
+            let mut both = own.iter().zip(theirs);
+            let lacks_some = both.clone().any(|(own, theirs)| !own && *theirs);
+            let has_some = both.any(|(own, theirs)| *own && !theirs);
+            let is_same_mesh = source.mesh.corners() == other.mesh.corners()
+                && source.mesh.positions() == other.mesh.positions();
+            if lacks_some && has_some && is_same_mesh {
+                told.push(format!(
+                    "{} and {} hold the same elements with different results, of which each crash element takes those \
+                     of one file; name a deck that includes both (*INCLUDE), the one with the thickness last",
+                    part.file_name(),
+                    other_part.file_name()
+                ));
+            }
+        }
+    }
+    told
 }
 
 /// Says how many elements of a stamped file have no results because places of layers differ in too many ways.
