@@ -43,9 +43,8 @@ impl<'a> MeshInput<'a> {
 /// A mesh prepared for drawing: corners with creased normals, edge lines, borders, nodes.
 ///
 /// Plain CPU work without a device, meant to run in a job. Corners are not shared between triangles:
-/// each carries its own normal and part, and a triangle's index follows from its corner's, which
-/// keeps flat shading, per-part looks and picking free of features that OpenGL lacks. Coordinates are
-/// `f32` about the centre of the box, so they keep their digits far from the origin.
+/// each carries its own normal and part, so that creases and looks of parts need no features that OpenGL
+/// lacks. Coordinates are `f32` about the centre of the box, so they keep their digits far from the origin.
 #[derive(Debug)]
 pub struct RenderMesh {
     /// The point that `f32` coordinates are relative to.

@@ -16,7 +16,6 @@ mod mesh;
 mod mesh_build;
 mod mesh_cache;
 mod pass;
-mod pick;
 mod pipeline;
 mod prepare;
 mod prepare_overlay;
@@ -33,12 +32,11 @@ mod uniforms;
 pub use coarse::{COARSE, COARSE_ON_PROCESSOR};
 pub use frame::Frame;
 pub use mesh::{MeshInput, RenderMesh};
-pub use pick::{PickHit, PickRequest};
 pub use readback::ReadbackError;
 pub use renderer::Renderer;
 pub use scene::{
-    Background, DepthMode, Drawable, FieldLook, Fill, LineLook, Marker, MarkerShape, Overlay,
-    PartLook, Polyline, Rgba, Scene, Section, Shading, Sheet, Style, WipeSide,
+    Background, DepthMode, Drawable, FieldLook, Fill, LineLook, Overlay, PartLook, Polyline, Rgba,
+    Scene, Section, Sheet, Style, WipeSide,
 };
 pub use steps::Drawn;
 pub use target::ViewTarget;

@@ -4,7 +4,6 @@
 /// simpler, but OpenGL has none.
 pub(super) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-pub(super) const PICK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// Bits of a depth; as a float it could not be drawn to everywhere.
 pub(super) const SHEET_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 pub(super) const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;

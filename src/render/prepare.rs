@@ -10,7 +10,7 @@ use super::mesh_cache::{GpuMesh, MeshCache};
 use super::pipeline::Gpu;
 use super::prepare_overlay::PreparedOverlay;
 use super::scene::{Background, Drawable, PartLook, Sheet, Style};
-use super::uniforms::{DrawableUniform, FrameUniform, Region};
+use super::uniforms::{DrawableUniform, FrameUniform};
 use crate::colormap::{ColorScale, Pattern};
 
 /// Parts per row of the table; the smallest largest texture of all backends is 2048 wide and high.
@@ -61,16 +61,15 @@ pub(super) struct PreparedDrawable {
 }
 
 impl Prepared {
-    /// Uploads what is new and makes the bind groups for drawing `region` of the frame. `sheets` are the
-    /// depths of the two sheets.
+    /// Uploads what is new and makes the bind groups for drawing the frame. `sheets` are the depths of the
+    /// two sheets.
     pub(super) fn new(
         gpu: Gpu<'_>,
         cache: &mut MeshCache,
         (frame, detail): (&Frame<'_>, Detail),
-        region: Region,
         sheets: [&wgpu::TextureView; 2],
     ) -> Self {
-        let uniform = FrameUniform::new(frame, region);
+        let uniform = FrameUniform::new(frame);
         let uniform = uniform_buffer(gpu.device, bytemuck::bytes_of(&uniform));
         let pixel = frame.camera.height / f64::from(frame.size[1].max(1));
         let mut solid = Vec::new();

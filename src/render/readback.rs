@@ -70,19 +70,7 @@ impl Download {
         self.done = Some(receiver);
     }
 
-    /// The bytes, row by row without padding, if they are there; never waits.
-    pub(super) fn poll(&mut self, device: &wgpu::Device) -> Option<Result<Vec<u8>, ReadbackError>> {
-        if device.poll(wgpu::PollType::Poll).is_err() {
-            return Some(Err(ReadbackError::Device));
-        }
-        match self.done.as_ref()?.try_recv() {
-            Ok(Ok(())) => Some(self.bytes()),
-            Err(mpsc::TryRecvError::Empty) => None,
-            Ok(Err(_)) | Err(mpsc::TryRecvError::Disconnected) => Some(Err(ReadbackError::Device)),
-        }
-    }
-
-    /// Waits for the bytes.
+    /// Waits for the bytes, row by row without padding.
     pub(super) fn wait(mut self, device: &wgpu::Device) -> Result<Vec<u8>, ReadbackError> {
         let wait = wgpu::PollType::Wait {
             submission_index: None,

@@ -3,7 +3,6 @@
 use super::context::Context;
 use super::frame::Frame;
 use super::mesh_cache::MeshCache;
-use super::pick::PickRequest;
 use super::pipeline::Gpu;
 use super::readback::{Download, ReadbackError, unpremultiply};
 use super::scene::Rgba;
@@ -114,16 +113,6 @@ impl Renderer {
         unpremultiply(&mut rgba);
         image::RgbaImage::from_raw(picture.width(), picture.height(), rgba)
             .ok_or(ReadbackError::Device)
-    }
-
-    /// Asks what lies under a pixel (from the top left corner) of a frame; see [`PickRequest`].
-    pub fn pick(&mut self, frame: &Frame<'_>, pixel: [f64; 2]) -> PickRequest {
-        let gpu = Gpu {
-            device: &self.device,
-            queue: &self.queue,
-            layouts: &self.context.layouts,
-        };
-        PickRequest::record(gpu, &self.context, &mut self.cache, frame, pixel)
     }
 
     /// Submits recorded commands and waits for their end, for measurements. False if the device did not

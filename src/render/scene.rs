@@ -16,7 +16,7 @@ pub type Rgba = [u8; 4];
 pub struct Scene {
     /// Meshes, in any order.
     pub drawables: Vec<Drawable>,
-    /// Lines, markers and fills on top of them.
+    /// Lines and fills on top of them.
     pub overlay: Overlay,
     /// What is behind everything.
     pub background: Background,
@@ -240,12 +240,6 @@ pub struct Drawable {
     pub sheet: Option<Sheet>,
     /// Side of the wipe line.
     pub wipe: WipeSide,
-    /// True if the section plane cuts it.
-    pub cut_by_section: bool,
-    /// Draws the selection outline around all of it.
-    pub selected: bool,
-    /// Lightens all of it, as under the mouse.
-    pub hovered: bool,
 }
 
 impl Drawable {
@@ -264,9 +258,6 @@ impl Drawable {
             push_back_length: 0.0,
             sheet: None,
             wipe: WipeSide::Both,
-            cut_by_section: true,
-            selected: false,
-            hovered: false,
         }
     }
 
@@ -297,7 +288,7 @@ impl Drawable {
 
     /// True if something is selected, so that an outline is needed.
     pub(super) fn has_selection(&self) -> bool {
-        self.selected || self.parts.iter().flat_map(|p| p.iter()).any(|p| p.selected)
+        self.parts.iter().flat_map(|p| p.iter()).any(|p| p.selected)
     }
 }
 
@@ -320,9 +311,6 @@ impl PartialEq for Drawable {
             && self.push_back_length == other.push_back_length
             && self.sheet == other.sheet
             && self.wipe == other.wipe
-            && self.cut_by_section == other.cut_by_section
-            && self.selected == other.selected
-            && self.hovered == other.hovered
     }
 }
 
@@ -369,23 +357,11 @@ impl PartialEq for FieldLook {
     }
 }
 
-/// How light falls on triangles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Shading {
-    /// Smooth within 35° between neighbours, creased beyond.
-    #[default]
-    Smooth,
-    /// Every triangle as it is.
-    Flat,
-}
-
 /// What is drawn of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Style {
     /// The triangles. Without them lines are drawn in the mesh's own colour.
     pub surface: bool,
-    /// Smooth or flat.
-    pub shading: Shading,
     /// Edges of elements.
     pub element_edges: bool,
     /// Creases: lines along which the sheet clearly turns by more than 25°, short ones only above 50°.
@@ -394,20 +370,16 @@ pub struct Style {
     pub borders: bool,
     /// Nodes.
     pub points: bool,
-    /// A fine, faint hatch on the back of sheets; small pictures of a mesh are left without.
-    pub back_hatch: bool,
 }
 
 impl Default for Style {
     fn default() -> Self {
         Self {
             surface: true,
-            shading: Shading::Smooth,
             element_edges: false,
             feature_edges: true,
             borders: true,
             points: false,
-            back_hatch: true,
         }
     }
 }
@@ -415,8 +387,6 @@ impl Default for Style {
 /// How an overlay meets the parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum DepthMode {
-    /// Hidden where a part is in front.
-    Tested,
     /// Drawn over everything.
     OnTop,
     /// Fully visible in front, faint behind.
@@ -424,13 +394,11 @@ pub enum DepthMode {
     Faint,
 }
 
-/// Things that are not meshes. Positions are world coordinates, widths and sizes points on the screen.
+/// Things that are not meshes. Positions are world coordinates, widths points on the screen.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overlay {
-    /// Lines, arrows and rings.
+    /// Lines.
     pub polylines: Vec<Polyline>,
-    /// Symbols at points.
-    pub markers: Vec<Marker>,
     /// Plain triangles, both sides visible.
     pub fills: Vec<Fill>,
 }
@@ -438,12 +406,11 @@ pub struct Overlay {
 impl Overlay {
     fn points(&self) -> impl Iterator<Item = &Point3> {
         let lines = self.polylines.iter().flat_map(|line| &line.points);
-        let markers = self.markers.iter().map(|marker| &marker.position);
         let fills = self
             .fills
             .iter()
             .flat_map(|fill| fill.triangles.iter().flatten());
-        lines.chain(markers).chain(fills)
+        lines.chain(fills)
     }
 }
 
@@ -458,8 +425,6 @@ pub struct Polyline {
     pub width: f32,
     /// Length of dashes and of the gaps between them in points; 0 for a solid line.
     pub dash: f32,
-    /// Ends in an arrow head.
-    pub arrow: bool,
     /// How it meets the parts.
     pub depth: DepthMode,
 }
@@ -472,70 +437,9 @@ impl Polyline {
             color,
             width,
             dash: 0.0,
-            arrow: false,
             depth: DepthMode::default(),
         }
     }
-
-    /// An arrow from `from` to `to`.
-    pub fn arrow(from: Point3, to: Point3, color: Rgba, width: f32) -> Self {
-        Self {
-            arrow: true,
-            ..Self::new(vec![from, to], color, width)
-        }
-    }
-
-    /// A ring about `axis` (any length but zero), drawn as 64 straight pieces.
-    pub fn ring(center: Point3, axis: &Vector3, radius: f64, color: Rgba, width: f32) -> Self {
-        let axis = axis.try_normalize(0.0).unwrap_or_else(Vector3::z);
-        let helper = if axis.x.abs() < 0.9 {
-            Vector3::x()
-        } else {
-            Vector3::y()
-        };
-        let u = axis.cross(&helper).normalize() * radius;
-        let v = axis.cross(&u);
-        let points = (0..=64)
-            .map(|i| {
-                let (sin, cos) = (f64::from(i) / 64.0 * std::f64::consts::TAU).sin_cos();
-                center + u * cos + v * sin
-            })
-            .collect();
-        Self::new(points, color, width)
-    }
-}
-
-/// Outline of a marker.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum MarkerShape {
-    /// A filled circle.
-    #[default]
-    Disc,
-    /// A circle.
-    Ring,
-    /// A filled square: the crash part's mark.
-    Square,
-    /// A filled triangle: the stamped part's mark.
-    Triangle,
-    /// A diagonal cross.
-    Cross,
-}
-
-/// A symbol of constant size on the screen.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Marker {
-    /// Centre in the scene.
-    pub position: Point3,
-    /// Form of the mark.
-    pub shape: MarkerShape,
-    /// Diameter in points.
-    pub size: f32,
-    /// Colour and opacity.
-    pub color: Rgba,
-    /// Colour of the thin rim that keeps it visible on any ground.
-    pub rim: Rgba,
-    /// How it meets the parts.
-    pub depth: DepthMode,
 }
 
 /// Triangles of one colour, without light.

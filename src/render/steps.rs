@@ -11,7 +11,6 @@ use super::prepare::{Detail, Prepared};
 use super::scene::Sheet;
 use super::slice::Slice;
 use super::target::{ViewTarget, within_limit};
-use super::uniforms::Region;
 
 /// A view that has not moved for so long is drawn exactly.
 const SETTLED: Duration = Duration::from_millis(120);
@@ -178,8 +177,7 @@ impl ViewTarget {
             }
             let sheets = textures.sheets(gpu.device, frame);
             let views = sheets.unwrap_or(&context.no_sheets).views();
-            let region = Region::whole(frame.size);
-            let prepared = Prepared::new(gpu, cache, (frame, Detail::Exact), region, views);
+            let prepared = Prepared::new(gpu, cache, (frame, Detail::Exact), views);
             let without = prepared.frame_group(gpu, context.no_sheets.views());
             let has_sheets = sheets.is_some();
             self.steps.pace.last = None;

@@ -12,7 +12,6 @@ use super::sheets::Sheets;
 use super::slice::Slice;
 use super::steps::Steps;
 use super::texture::{attachment, slice_pass, texture, view};
-use super::uniforms::Region;
 
 /// Pixels of the window per pixel of a coarse picture, on each axis, where a processor draws: as few as leave
 /// frames quick, which are more while other work keeps it busy.
@@ -249,8 +248,7 @@ impl Textures {
     ) {
         let sheets = self.sheets(gpu.device, frame);
         let views = sheets.unwrap_or(&context.no_sheets).views();
-        let region = Region::whole(frame.size);
-        let prepared = Prepared::new(gpu, cache, (frame, detail), region, views);
+        let prepared = Prepared::new(gpu, cache, (frame, detail), views);
         if let Some(sheets) = sheets {
             // The frame's own group reads what is drawn here.
             let group = prepared.frame_group(gpu, context.no_sheets.views());

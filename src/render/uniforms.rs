@@ -2,7 +2,7 @@
 //! `f64`; only their product, small near the target, becomes `f32`.
 
 use super::frame::Frame;
-use super::scene::{Background, Drawable, Rgba, Shading, Sheet, WipeSide};
+use super::scene::{Background, Drawable, Rgba, Sheet, WipeSide};
 use crate::colormap::{Rgb, UNMATCHED};
 use crate::geometry::camera::ScreenSize;
 use crate::geometry::{Camera, Matrix4, Point3};
@@ -37,29 +37,12 @@ pub(super) struct DrawableUniform {
     flags: [u32; 4],
 }
 
-/// A rectangle of pixels of the whole picture.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Region {
-    pub(super) origin: [f64; 2],
-    pub(super) size: [f64; 2],
-}
-
-impl Region {
-    pub(super) fn whole(size: [u32; 2]) -> Self {
-        Self {
-            origin: [0.0; 2],
-            size: size.map(f64::from),
-        }
-    }
-}
-
 impl FrameUniform {
-    /// The numbers for drawing `region` of a frame.
-    pub(super) fn new(frame: &Frame<'_>, region: Region) -> Self {
+    /// The numbers of a frame.
+    pub(super) fn new(frame: &Frame<'_>) -> Self {
         let (scene, camera) = (frame.scene, frame.camera);
         let screen = screen_size(frame.size);
         let bounds = scene.bounds();
-        let whole = camera.clip_from_view(screen.aspect(), &bounds);
         let scale = scene.scale_factor();
         let (top, bottom) = match scene.background {
             Background::Gradient { top, bottom } => (top, bottom),
@@ -68,19 +51,14 @@ impl FrameUniform {
         let wipe = scene.wipe.map_or(-1.0, |share| share * screen.width as f32);
         let lines = &scene.lines;
         Self {
-            clip_from_view: columns(&(region_from_whole(screen, region) * whole)),
+            clip_from_view: columns(&camera.clip_from_view(screen.aspect(), &bounds)),
             eye: [
                 camera.eye_distance().unwrap_or(0.0) as f32,
                 f32::from(camera.eye_distance().is_some()),
                 (camera.height / screen.height) as f32,
                 scale,
             ],
-            screen: [
-                region.size[0] as f32,
-                region.size[1] as f32,
-                region.origin[0] as f32,
-                region.origin[1] as f32,
-            ],
+            screen: [screen.width as f32, screen.height as f32, 0.0, 0.0],
             section: section_in_view(frame),
             switches: [
                 f32::from(scene.section.is_some()),
@@ -140,11 +118,11 @@ impl DrawableUniform {
             ],
             flags: [
                 switches(drawable, other_sheet),
-                index as u32 + 1,
                 drawable
                     .parts
                     .as_ref()
                     .map_or(0, |parts| parts.len() as u32),
+                0,
                 0,
             ],
         }
@@ -184,14 +162,9 @@ fn switches(drawable: &Drawable, other_sheet: Option<Rgb>) -> u32 {
     let sheet = drawable.sheet.filter(|_| other_sheet.is_some());
     [
         drawable.field.is_some(),
-        drawable.style.shading == Shading::Flat,
-        drawable.style.back_hatch,
         drawable.world_from_mesh.is_mirrored(),
-        drawable.cut_by_section,
         drawable.wipe == WipeSide::Left,
         drawable.wipe == WipeSide::Right,
-        drawable.selected,
-        drawable.hovered,
         sheet == Some(Sheet::First),
         sheet == Some(Sheet::Second),
         !drawable.style.surface,
@@ -215,21 +188,6 @@ fn section_in_view(frame: &Frame<'_>) -> [f32; 4] {
     let normal = frame.camera.view_direction(&normal);
     let constant = -normal.dot(&frame.camera.view_point(&section.point));
     [normal.x, normal.y, normal.z, constant].map(|x| x as f32)
-}
-
-/// Stretches a region of the picture over all of clip space.
-fn region_from_whole(screen: ScreenSize, region: Region) -> Matrix4 {
-    let mut matrix = Matrix4::identity();
-    let whole = [screen.width, screen.height];
-    for axis in 0..2 {
-        let scale = whole[axis] / region.size[axis];
-        let center = (region.origin[axis] + region.size[axis] / 2.0) / whole[axis] * 2.0 - 1.0;
-        // Pixels count downwards, clip space upwards.
-        let center = if axis == 0 { center } else { -center };
-        matrix[(axis, axis)] = scale;
-        matrix[(axis, 3)] = -center * scale;
-    }
-    matrix
 }
 
 pub(super) fn screen_size(size: [u32; 2]) -> ScreenSize {

@@ -14,8 +14,8 @@ use shapematch::jobs::{JobEvent, JobId, JobKey, JobStage, Live, PartSource};
 use shapematch::monitor::{Monitor, Observer};
 use shapematch::pipeline::load::LoadSettings;
 use shapematch::render::{
-    Drawable, Drawn, FieldLook, Frame, MeshInput, RenderMesh, Renderer, Scene, Sheet, Style,
-    ViewTarget,
+    Drawable, Drawn, FieldLook, Frame, MeshInput, PartLook, RenderMesh, Renderer, Scene, Sheet,
+    Style, ViewTarget,
 };
 use shapematch::role::Role;
 
@@ -36,6 +36,14 @@ pub(super) fn wavy() -> TriMesh {
         [[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]]
     };
     TriMesh::new(positions.collect(), (0..n * n).flat_map(cell).collect()).unwrap()
+}
+
+/// Looks of a mesh of one part.
+fn selected(selected: bool) -> Arc<[PartLook]> {
+    Arc::new([PartLook {
+        selected,
+        ..PartLook::default()
+    }])
 }
 
 /// Two sheets that cut through each other, one of them selected and coloured by a field.
@@ -63,7 +71,7 @@ fn two_sheets(mesh: &Arc<RenderMesh>, n_vertices: usize) -> Scene {
     let second = Drawable {
         world_from_mesh: lifted,
         field: Some(field),
-        selected: true,
+        parts: Some(selected(true)),
         sheet: Some(Sheet::Second),
         ..Drawable::new(Arc::clone(mesh), [0xE6, 0x9F, 0x00])
     };
@@ -159,7 +167,7 @@ fn a_large_picture_in_steps_is_the_picture_at_once() {
     assert!(rough < 0.5 * difference(&empty, &at_once), "{rough}");
 
     // Other looks leave the picture until they are drawn; a turn shows at once.
-    scene.drawables[1].selected = false;
+    scene.drawables[1].parts = Some(selected(false));
     let (partly, before) = step(&mut renderer, &mut target, &frame(&scene, &camera));
     assert!(matches!(partly, Drawn::Partly(_)));
     assert_eq!(before, at_once);

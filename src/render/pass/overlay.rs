@@ -1,13 +1,11 @@
-//! Lines, markers and fills over the parts.
+//! Lines and fills over the parts.
 
 use crate::render::pipeline::{Depth, Layouts, OVER, PipelineSpec, shader};
-use crate::render::prepare_overlay::{
-    FILL_LAYOUT, Kinds, LINE_LAYOUT, MARKER_LAYOUT, PreparedOverlay,
-};
+use crate::render::prepare_overlay::{FILL_LAYOUT, Kinds, LINE_LAYOUT, PreparedOverlay};
 
 /// Opacity of [`DepthMode::Faint`](crate::render::DepthMode::Faint) things behind a part.
 const FAINTNESS: f64 = 0.22;
-/// Lines, markers and fills.
+/// Lines and fills.
 #[derive(Debug)]
 pub(in crate::render) struct OverlayPass {
     tested: Kinds<wgpu::RenderPipeline>,
@@ -35,7 +33,6 @@ impl OverlayPass {
             Kinds {
                 fills: build("vs_fill", "fs_fill", FILL_LAYOUT),
                 lines: build("vs_line", "fs_line", LINE_LAYOUT),
-                markers: build("vs_marker", "fs_marker", MARKER_LAYOUT),
             }
         };
         Self {
@@ -48,7 +45,6 @@ impl OverlayPass {
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, overlay: &PreparedOverlay) {
         draw_kinds(&self.faint, pass, &overlay.faint);
         draw_kinds(&self.tested, pass, &overlay.faint);
-        draw_kinds(&self.tested, pass, &overlay.tested);
         draw_kinds(&self.on_top, pass, &overlay.on_top);
     }
 }
@@ -63,15 +59,9 @@ fn draw_kinds(
         pass.set_vertex_buffer(0, buffer.slice(..));
         pass.draw(0..*count, 0..1);
     }
-    let quads = [
-        (&pipelines.lines, &data.lines),
-        (&pipelines.markers, &data.markers),
-    ];
-    for (pipeline, data) in quads {
-        if let Some((buffer, count)) = data {
-            pass.set_pipeline(pipeline);
-            pass.set_vertex_buffer(0, buffer.slice(..));
-            pass.draw(0..6, 0..*count);
-        }
+    if let Some((buffer, count)) = &data.lines {
+        pass.set_pipeline(&pipelines.lines);
+        pass.set_vertex_buffer(0, buffer.slice(..));
+        pass.draw(0..6, 0..*count);
     }
 }

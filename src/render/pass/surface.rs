@@ -2,13 +2,12 @@
 
 use crate::render::mesh::Corner;
 use crate::render::pipeline::{
-    Depth, Layouts, MASK_FORMAT, OVER, PICK_FORMAT, PipelineSpec, SAMPLES, SHEET_FORMAT, shader,
+    Depth, Layouts, MASK_FORMAT, OVER, PipelineSpec, SAMPLES, SHEET_FORMAT, shader,
 };
 use crate::render::prepare::PreparedDrawable;
 use crate::render::slice::Slice;
 
-/// Triangles: lit and solid, as glass, as the mask of the selection, as depths of a sheet, as indices
-/// for picking.
+/// Triangles: lit and solid, as glass, as the mask of the selection, as depths of a sheet.
 #[derive(Debug)]
 pub(in crate::render) struct Surface {
     solid: wgpu::RenderPipeline,
@@ -16,7 +15,6 @@ pub(in crate::render) struct Surface {
     clear_fronts: wgpu::RenderPipeline,
     selected: wgpu::RenderPipeline,
     depth: wgpu::RenderPipeline,
-    pick: wgpu::RenderPipeline,
 }
 
 /// Attributes of [`Corner`].
@@ -69,13 +67,6 @@ impl Surface {
                 ..spec("sheet depth", "fs_depth")
             }
             .build(device),
-            pick: PipelineSpec {
-                biased: false,
-                format: PICK_FORMAT,
-                samples: 1,
-                ..spec("pick", "fs_pick")
-            }
-            .build(device),
         }
     }
 
@@ -115,14 +106,6 @@ impl Surface {
         slice: &mut Slice,
     ) {
         draw_with(&self.depth, pass, drawable, slice);
-    }
-
-    pub(in crate::render) fn draw_pick(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        drawable: &PreparedDrawable,
-    ) {
-        draw_with(&self.pick, pass, drawable, &mut Slice::all());
     }
 }
 

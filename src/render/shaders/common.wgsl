@@ -9,7 +9,7 @@ struct Frame {
     clip_from_view: mat4x4<f32>,
     // Distance of the eye, 1 for perspective, world length of a pixel at the target, pixels per point.
     eye: vec4<f32>,
-    // Width and height of the drawn region and the pixel it starts at in the whole picture.
+    // Width and height of the picture in pixels, 0, 0.
     screen: vec4<f32>,
     // Plane in view space: kept where dot(xyz, p) + w <= 0.
     section: vec4<f32>,
@@ -36,23 +36,18 @@ struct Drawable {
     other_sheet: vec4<f32>,
     // Field value at the start of the table, one over the range, pixels pushed back, edge opacity.
     params: vec4<f32>,
-    // Switches (below), index in the scene, width of the parts table, 0.
+    // Switches (below), width of the parts table, 0, 0.
     flags: vec4<u32>,
 }
 
 const HAS_FIELD: u32 = 1u;
-const FLAT: u32 = 2u;
-const BACK_HATCH: u32 = 4u;
-const MIRRORED: u32 = 8u;
-const CUT: u32 = 16u;
-const WIPE_LEFT: u32 = 32u;
-const WIPE_RIGHT: u32 = 64u;
-const SELECTED: u32 = 128u;
-const HOVERED: u32 = 256u;
-const FIRST_SHEET: u32 = 512u;
-const SECOND_SHEET: u32 = 1024u;
-const BARE: u32 = 2048u;
-const HIDES_BEYOND: u32 = 4096u;
+const MIRRORED: u32 = 2u;
+const WIPE_LEFT: u32 = 4u;
+const WIPE_RIGHT: u32 = 8u;
+const FIRST_SHEET: u32 = 16u;
+const SECOND_SHEET: u32 = 32u;
+const BARE: u32 = 64u;
+const HIDES_BEYOND: u32 = 128u;
 
 // Larger field values mean that there is none.
 const NO_VALUE: f32 = 1e37;
@@ -86,7 +81,7 @@ fn has(bit: u32) -> bool {
 
 // Colour and state of a part; all of the drawable's own where the table ends.
 fn part_look(part: u32) -> vec4<u32> {
-    if part < drawable.flags.z {
+    if part < drawable.flags.y {
         return textureLoad(parts, vec2<u32>(part % PARTS_PER_ROW, part / PARTS_PER_ROW), 0);
     }
     return vec4<u32>(0u, 0u, 0u, PART_VISIBLE);
@@ -127,15 +122,14 @@ fn beyond_section(p: vec3<f32>) -> f32 {
 
 // True if the section or the wipe line removes this fragment.
 fn removed(p: vec3<f32>, pixel: vec2<f32>) -> bool {
-    if has(CUT) && frame.switches.x > 0.5 && beyond_section(p) > 0.0 {
+    if frame.switches.x > 0.5 && beyond_section(p) > 0.0 {
         return true;
     }
-    let x = pixel.x + frame.screen.z;
     if frame.switches.y >= 0.0 {
-        if has(WIPE_LEFT) && x >= frame.switches.y {
+        if has(WIPE_LEFT) && pixel.x >= frame.switches.y {
             return true;
         }
-        if has(WIPE_RIGHT) && x < frame.switches.y {
+        if has(WIPE_RIGHT) && pixel.x < frame.switches.y {
             return true;
         }
     }
@@ -187,7 +181,7 @@ struct Segment {
     half_width: f32,
 }
 
-fn segment_corner(from_view: vec3<f32>, to_view: vec3<f32>, widths: vec2<f32>, corner: u32) -> Segment {
+fn segment_corner(from_view: vec3<f32>, to_view: vec3<f32>, width: f32, corner: u32) -> Segment {
     var a = from_view;
     var b = to_view;
     // What lies behind the eye is cut off before the division.
@@ -213,11 +207,10 @@ fn segment_corner(from_view: vec3<f32>, to_view: vec3<f32>, widths: vec2<f32>, c
     let across = vec2<f32>(-along.y, along.x);
     let at_end = corner == 1u || corner == 2u || corner == 4u;
     let side = select(-1.0, 1.0, corner == 2u || corner == 4u || corner == 5u);
-    let half_width = 0.5 * select(widths.x, widths.y, at_end);
-    // One pixel of air for the soft border; arrow heads have flat ends instead of round ones.
+    let half_width = 0.5 * width;
+    // One pixel of air for the soft border.
     let reach = half_width + 1.0;
-    let cap = select(0.5, reach, widths.x == widths.y);
-    let beyond = select(-cap, cap, at_end);
+    let beyond = select(-reach, reach, at_end);
     let pixel = select(pixel_a, pixel_b, at_end) + along * beyond + across * (side * reach);
     let depth = select(clip_a.z / clip_a.w, clip_b.z / clip_b.w, at_end);
     // Divided already, so that places interpolate evenly on the screen.

@@ -64,7 +64,7 @@ fn vs_wide(
     let to_view = view_point(to_position);
     let pull = 1.2 - drawable.params.z;
     let segment = segment_corner(
-        pulled(from_view, pull), pulled(to_view, pull), vec2<f32>(width), corner);
+        pulled(from_view, pull), pulled(to_view, pull), width, corner);
     out.clip = segment.clip;
     let at_end = corner == 1u || corner == 2u || corner == 4u;
     out.view = select(from_view, to_view, at_end);

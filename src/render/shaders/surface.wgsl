@@ -5,8 +5,8 @@ struct Varyings {
     // Field value and 1 where there is one.
     @location(2) field: vec2<f32>,
     @location(3) @interpolate(flat) color: vec3<f32>,
-    // Part bits; the triangle's index for picking.
-    @location(4) @interpolate(flat) ids: vec2<u32>,
+    // Bits of the part.
+    @location(4) @interpolate(flat) look: u32,
 }
 
 const FIELD_STEPS: f32 = 1024.0;
@@ -19,7 +19,13 @@ fn octahedral(e: vec2<f32>) -> vec3<f32> {
     return normalize(n);
 }
 
-fn transformed(position: vec3<f32>, normal: vec2<f32>, part: u32, field: f32, index: u32) -> Varyings {
+@vertex
+fn vs_main(
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec2<f32>,
+    @location(2) part: u32,
+    @location(3) field: f32,
+) -> Varyings {
     let look = part_look(part);
     var out: Varyings;
     if (look.w & PART_VISIBLE) == 0u {
@@ -33,19 +39,8 @@ fn transformed(position: vec3<f32>, normal: vec2<f32>, part: u32, field: f32, in
     out.field = known_value(field);
     let own = vec3<f32>(look.rgb) / 255.0;
     out.color = select(drawable.color.rgb, own, (look.w & PART_COLORED) != 0u);
-    out.ids = vec2<u32>(look.w, index / 3u);
+    out.look = look.w;
     return out;
-}
-
-@vertex
-fn vs_main(
-    @location(0) position: vec3<f32>,
-    @location(1) normal: vec2<f32>,
-    @location(2) part: u32,
-    @location(3) field: f32,
-    @builtin(vertex_index) index: u32,
-) -> Varyings {
-    return transformed(position, normal, part, field, index);
 }
 
 struct Light {
@@ -126,11 +121,6 @@ fn coincidence(in: Varyings, n: vec3<f32>, v: vec3<f32>) -> f32 {
 fn shaded(in: Varyings, front: bool) -> vec3<f32> {
     let v = to_eye(in.view);
     var n = normalize(in.normal);
-    if has(FLAT) {
-        // The plane of the triangle, turned to the side of its stored normal.
-        let plane = normalize(cross(dpdx(in.view), dpdy(in.view)));
-        n = select(-plane, plane, dot(plane, n) >= 0.0);
-    }
     let back = front == has(MIRRORED);
     n = select(n, -n, back);
     // Creases aside, smooth normals may point a little away from the viewer near outlines.
@@ -148,16 +138,16 @@ fn shaded(in: Varyings, front: bool) -> vec3<f32> {
         if in.field.y > 0.5 {
             let found = field_color(in.field.x / in.field.y);
             base = linear_from_srgb(found.rgb);
-            base = mix(base, base * 0.28, pattern(in.clip.xy + frame.screen.zw, found.a));
+            base = mix(base, base * 0.28, pattern(in.clip.xy, found.a));
         } else {
-            let stripe = hatch(in.clip.xy + frame.screen.zw, 1.0, 5.0, 1.6);
+            let stripe = hatch(in.clip.xy, 1.0, 5.0, 1.6);
             base = linear_from_srgb(frame.unmatched_color.rgb) * (1.0 - 0.62 * stripe);
         }
     }
     let both = coincidence(in, n, v);
     if both > 0.0 {
         // The same stripes on either sheet, so that it does not matter which one is in front.
-        let stripe = hatch(in.clip.xy + frame.screen.zw, 1.0, 7.0, 3.5);
+        let stripe = hatch(in.clip.xy, 1.0, 7.0, 3.5);
         let share = select(stripe, 1.0 - stripe, has(SECOND_SHEET));
         base = mix(base, linear_from_srgb(drawable.other_sheet.rgb), share * both);
     }
@@ -165,15 +155,13 @@ fn shaded(in: Varyings, front: bool) -> vec3<f32> {
     if back {
         // 15 % darker on the screen.
         color *= 0.71;
-        if has(BACK_HATCH) {
-            let stripe = hatch(in.clip.xy + frame.screen.zw, -1.0, 5.0, 1.0);
-            color *= 1.0 - 0.10 * stripe * drawable.other_sheet.w * (1.0 - both);
-        }
+        let stripe = hatch(in.clip.xy, -1.0, 5.0, 1.0);
+        color *= 1.0 - 0.10 * stripe * drawable.other_sheet.w * (1.0 - both);
     }
-    if has(HOVERED) || (in.ids.x & PART_HOVERED) != 0u {
+    if (in.look & PART_HOVERED) != 0u {
         color = mix(color, vec3<f32>(1.0), 0.16);
     }
-    if has(CUT) && frame.switches.x > 0.5 {
+    if frame.switches.x > 0.5 {
         // The cut itself as a line of two points in the part's own bright colour.
         let depth = -beyond_section(in.view) / max(fwidth(beyond_section(in.view)), 1e-12);
         let line = 1.0 - smoothstep(2.0 * frame.eye.w - 0.5, 2.0 * frame.eye.w + 0.5, depth);
@@ -212,8 +200,7 @@ fn fs_clear(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) ve
 // The selected area for the outline.
 @fragment
 fn fs_selected(in: Varyings) -> @location(0) vec4<f32> {
-    let selected = has(SELECTED) || (in.ids.x & PART_SELECTED) != 0u;
-    if !selected || hidden(in) {
+    if (in.look & PART_SELECTED) == 0u || hidden(in) {
         discard;
     }
     return vec4<f32>(1.0);
@@ -226,13 +213,4 @@ fn fs_depth(in: Varyings) -> @location(0) u32 {
         discard;
     }
     return bitcast<u32>(select(in.view.z, 1e-30, in.view.z == 0.0));
-}
-
-// Drawable and triangle, counted from one.
-@fragment
-fn fs_pick(in: Varyings) -> @location(0) vec2<u32> {
-    if hidden(in) {
-        discard;
-    }
-    return vec2<u32>(drawable.flags.y, in.ids.y + 1u);
 }

@@ -184,7 +184,6 @@ pub(super) fn frame(look: &Look, corners: &[Point3; 4]) -> Overlay {
             color: [ink, ink, ink, 14],
             depth: DepthMode::OnTop,
         }],
-        ..Overlay::default()
     }
 }
 
