@@ -6,8 +6,9 @@ mod summary;
 
 use std::sync::Arc;
 
+use super::identity::Identity;
 use super::map_fields;
-use super::meshes::{MeshKey, ShownMesh};
+use super::meshes::ShownMesh;
 use super::visible_parts::PartInstance;
 use crate::app::{AppState, ColorBy, Coloring, MapPicture};
 use crate::assess::Assessment;
@@ -86,18 +87,15 @@ impl FieldKind {
 }
 
 /// A field by what it was made of.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 struct FieldKey {
     kind: FieldKind,
-    mesh: MeshKey,
-    /// The other mesh of a reduction error or the mapping, by identity.
-    other: usize,
+    mesh: Identity,
+    /// What it is made of besides: the other mesh of a reduction error, results, or an assessment.
+    other: Option<Identity>,
     /// What is shown of results.
     shown: Option<ShownValue>,
 }
-
-/// A mapping, and what it is compared with.
-type Results = (Option<Arc<MapRun>>, Option<Arc<OtherResult>>);
 
 /// A finished field.
 struct Field {
@@ -106,9 +104,6 @@ struct Field {
     /// What the colours should span; nothing where no value is known.
     range: Option<[f64; 2]>,
     summary: Option<Summary>,
-    /// Keeps what the key names by its address.
-    _key: (Arc<ShownMesh>, Option<Arc<TriMesh>>, Results),
-    _stated: Option<Stated>,
 }
 
 /// The fields of both windows.
@@ -116,6 +111,7 @@ pub(super) struct FieldStore {
     background: Background<FieldKey, Field>,
     /// Most recently used last.
     ready: Vec<(FieldKey, Arc<Field>)>,
+    /// Those that could not be made, as long as someone holds what they are made of.
     failed: Vec<FieldKey>,
     /// Ranges of what each window shows, so that both have one scale. A window without any value says
     /// nothing of it.
@@ -124,6 +120,13 @@ pub(super) struct FieldStore {
     summaries: PerRole<Option<Summary>>,
     /// How many parts each window shows.
     n_shown: PerRole<usize>,
+}
+
+impl FieldKey {
+    /// True while someone holds all that the field is made of.
+    fn is_there(&self) -> bool {
+        self.mesh.is_there() && self.other.as_ref().is_none_or(Identity::is_there)
+    }
 }
 
 impl FieldStore {
@@ -184,6 +187,7 @@ impl FieldStore {
         let n_shown = self.n_shown.crash + self.n_shown.stamped;
         let n = self.ready.len().saturating_sub(KEPT + n_shown);
         self.ready.drain(..n);
+        self.failed.retain(FieldKey::is_there);
         let scale = self.scale(window, state);
         let look = |field: Arc<Field>| {
             Some(FieldLook {
@@ -423,17 +427,16 @@ impl Order {
             }
             _ => None,
         };
-        let run = mapped.as_ref().map_or(0, |run| Arc::as_ptr(run).addr());
-        let run = compared
+        let of_mesh = other.as_ref().map(Identity::of);
+        let of_assessment = stated
             .as_ref()
-            .map_or(run, |other| Arc::as_ptr(other).addr());
-        let run = stated
-            .as_ref()
-            .map_or(run, |(assessment, _)| Arc::as_ptr(assessment).addr());
+            .map(|(assessment, _)| Identity::of(assessment));
+        let of_results = compared.as_ref().map(Identity::of);
+        let of_results = of_results.or(mapped.as_ref().map(Identity::of));
         let key = FieldKey {
             kind,
             mesh: mesh.key(),
-            other: other.as_ref().map_or(run, |mesh| Arc::as_ptr(mesh).addr()),
+            other: of_mesh.or(of_assessment).or(of_results),
             shown,
         };
         Some(Self {
@@ -448,7 +451,7 @@ impl Order {
 
     fn task(self) -> Task<FieldKey, Field> {
         Task {
-            key: self.key,
+            key: self.key.clone(),
             work: Box::new(move || self.make()),
         }
     }
@@ -478,8 +481,6 @@ impl Order {
             summary,
             is_by_corner,
             values: values.into(),
-            _key: (self.mesh, self.other, (self.mapped, self.compared)),
-            _stated: self.stated,
         }
     }
 

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::identity::Identity;
 use crate::app::Part;
 use crate::geometry::{Point3, TriMesh};
 use crate::jobs::MeasuredLevel;
@@ -62,14 +63,10 @@ impl MeshSource {
         self.part.ids.part_of(triangle).unwrap_or_default()
     }
 
-    fn key(&self) -> MeshKey {
-        MeshKey(Arc::as_ptr(self.mesh()).addr())
+    fn key(&self) -> Identity {
+        Identity::of(self.mesh())
     }
 }
-
-/// A mesh by identity. Whoever holds a key holds the mesh too, so addresses are not given twice.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct MeshKey(usize);
 
 /// A mesh that can be drawn and picked.
 pub(super) struct ShownMesh {
@@ -109,7 +106,7 @@ impl ShownMesh {
         }
     }
 
-    pub fn key(&self) -> MeshKey {
+    pub fn key(&self) -> Identity {
         self.source.key()
     }
 
@@ -152,10 +149,11 @@ impl ShownMesh {
 
 /// The prepared meshes.
 pub(super) struct MeshStore {
-    background: Background<MeshKey, ShownMesh>,
+    background: Background<Identity, ShownMesh>,
     /// Most recently used last.
     ready: Vec<Arc<ShownMesh>>,
-    failed: Vec<MeshKey>,
+    /// Those that could not be prepared, as long as someone holds them.
+    failed: Vec<Identity>,
     /// How many each window shows.
     n_shown: PerRole<usize>,
     n_coarse: usize,
@@ -186,7 +184,9 @@ impl MeshStore {
         wake: &egui::Context,
     ) -> Vec<Option<Arc<ShownMesh>>> {
         let n_coarse = self.n_coarse;
-        let wanted = sources.iter().filter(|source| !self.is_known(source.key()));
+        let wanted = sources
+            .iter()
+            .filter(|source| !self.is_known(&source.key()));
         let wanted = wanted.map(|source| {
             let source = source.clone();
             Task {
@@ -201,7 +201,7 @@ impl MeshStore {
                 None => self.failed.push(key),
             }
         }
-        let found = sources.iter().map(|source| self.take(source.key()));
+        let found = sources.iter().map(|source| self.take(&source.key()));
         let found = found.collect();
         *self.n_shown.get_mut(role) = sources.len();
         self.forget();
@@ -213,13 +213,13 @@ impl MeshStore {
         self.background.is_waiting()
     }
 
-    fn is_known(&self, key: MeshKey) -> bool {
-        self.failed.contains(&key) || self.ready.iter().any(|mesh| mesh.key() == key)
+    fn is_known(&self, key: &Identity) -> bool {
+        self.failed.contains(key) || self.ready.iter().any(|mesh| mesh.key() == *key)
     }
 
     /// Finds a mesh and makes it the most recently used.
-    fn take(&mut self, key: MeshKey) -> Option<Arc<ShownMesh>> {
-        let at = self.ready.iter().position(|mesh| mesh.key() == key)?;
+    fn take(&mut self, key: &Identity) -> Option<Arc<ShownMesh>> {
+        let at = self.ready.iter().position(|mesh| mesh.key() == *key)?;
         let mesh = self.ready.remove(at);
         self.ready.push(Arc::clone(&mesh));
         Some(mesh)
@@ -229,5 +229,6 @@ impl MeshStore {
         let n_shown = self.n_shown.crash + self.n_shown.stamped;
         let n = self.ready.len().saturating_sub(KEPT + n_shown);
         self.ready.drain(..n);
+        self.failed.retain(Identity::is_there);
     }
 }

@@ -6,6 +6,7 @@ mod drawing;
 mod fields;
 mod frame;
 mod gpu;
+mod identity;
 mod map_fields;
 mod meshes;
 mod motion;

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::meshes::{MeshKey, ShownMesh};
+use super::identity::Identity;
+use super::meshes::ShownMesh;
 use crate::app::{AppState, Shared};
 use crate::colormap::{ColorScale, Rgb};
 use crate::geometry::{
@@ -17,14 +18,14 @@ use crate::ui::background::{Background, Task};
 use crate::ui::theme::Look;
 
 /// What a cut was made of.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 struct CutKey {
     /// The window that shows it: each may show the same part at another pose.
     window: Role,
     role: Role,
     /// The number of a stamped file; 0 for the first and for the crash part.
     number: usize,
-    mesh: MeshKey,
+    mesh: Identity,
     plane: Plane,
     world_from_mesh: Similarity,
 }
@@ -223,6 +224,7 @@ fn shown_files(state: &AppState) -> Vec<usize> {
 pub(super) struct SectionStore {
     background: Background<CutKey, Cut>,
     ready: BTreeMap<Place, (CutKey, Arc<Cut>)>,
+    /// Those that could not be made, of what is shown.
     failed: Vec<CutKey>,
     /// The plane that cuts were asked for last.
     asked: Option<Plane>,
@@ -272,6 +274,9 @@ impl SectionStore {
         self.ready.retain(|place, _| {
             place.0 != window || keys.iter().any(|(key, _)| key.place() == *place)
         });
+        let is_shown = |failed: &CutKey| keys.iter().any(|(key, _)| key == failed);
+        self.failed
+            .retain(|key| key.window != window || is_shown(key));
         let is_missing = |key: &CutKey| {
             let ready = self.ready.get(&key.place());
             ready.is_none_or(|(of, _)| of != key) && !self.failed.contains(key)
@@ -279,9 +284,10 @@ impl SectionStore {
         let wanted = keys
             .into_iter()
             .filter(|(key, _)| is_missing(key))
-            .map(|(key, mesh)| Task {
-                key,
-                work: Box::new(move || Cut::make(&key, mesh)),
+            .map(|(key, mesh)| {
+                let cut = key.clone();
+                let work = Box::new(move || Cut::make(&cut, mesh));
+                Task { key, work }
             });
         let wanted = wanted.collect();
         for (key, cut) in self.background.exchange(window, wanted, wake) {
@@ -315,14 +321,14 @@ impl SectionStore {
         // The crash part's window is the one that shows both.
         let newest = |role, number| self.newest(Role::Crash, role, number);
         let (crash_key, crash) = newest(Role::Crash, 0)?;
-        let mut key = vec![*crash_key];
+        let mut key = vec![crash_key.clone()];
         let mut stamped = Vec::new();
         for number in shown_files(state) {
             let (of, cut) = newest(Role::Stamped, number)?;
             if of.plane != crash_key.plane {
                 return None;
             }
-            key.push(*of);
+            key.push(of.clone());
             stamped.push((number, Arc::clone(cut)));
         }
         let is_known = self.gaps.as_ref().is_some_and(|(of, _)| *of == key);
