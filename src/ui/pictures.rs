@@ -128,7 +128,8 @@ pub fn clickable<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
 
 /// Packs and writes on a thread of its own.
 fn write(picture: Picture, wanted: Wanted, sender: Sender<News>, ctx: egui::Context) {
-    run_once("picture", move || {
+    let (failed, waking) = (sender.clone(), ctx.clone());
+    let is_started = run_once("picture", move || {
         let bytes = picture.to_png_with(&wanted.texts);
         let news = match save(&wanted.place, &wanted.inputs, &bytes) {
             Ok(path) => (NoticeLevel::Success, format!("saved: {}", path.display())),
@@ -141,6 +142,11 @@ fn write(picture: Picture, wanted: Wanted, sender: Sender<News>, ctx: egui::Cont
         let _ = sender.send(news);
         ctx.request_repaint();
     });
+    if !is_started {
+        let text = "the image could not be written: the system has no thread left";
+        let _ = failed.send((NoticeLevel::Error, text.to_owned()));
+        waking.request_repaint();
+    }
 }
 
 fn save(place: &PicturePlace, inputs: &[PathBuf], bytes: &[u8]) -> anyhow::Result<PathBuf> {

@@ -59,7 +59,7 @@ impl Viewports {
         n_windows: u32,
     ) -> Option<RgbaImage> {
         let last_frame = self.windows.get(role).last_frame.as_ref()?;
-        let size = size_of(last_frame.size, choice.size, n_windows);
+        let size = size_of(last_frame.size, choice.size, (role, n_windows));
         let mut scene = (*last_frame.scene).clone();
         scene.pixels_per_point *= size[1] as f32 / last_frame.size[1].max(1) as f32;
         if choice.is_transparent {
@@ -78,8 +78,9 @@ impl Viewports {
     }
 }
 
-/// Pixels of one window's picture, neither side above the largest.
-fn size_of(shown: [u32; 2], wanted: PictureSize, n_windows: u32) -> [u32; 2] {
+/// Pixels of the picture of one of `n_windows`, neither side above the largest. Of a width that cannot be halved the
+/// left one has the pixel more.
+fn size_of(shown: [u32; 2], wanted: PictureSize, (role, n_windows): (Role, u32)) -> [u32; 2] {
     let largest = *PictureSize::SIDES.end();
     match wanted {
         PictureSize::Window(factor) => {
@@ -88,9 +89,12 @@ fn size_of(shown: [u32; 2], wanted: PictureSize, n_windows: u32) -> [u32; 2] {
             shown.map(|side| (side * factor).max(1))
         }
         PictureSize::Pixels([width, height]) => {
-            let gaps = GAP * (n_windows - 1);
-            let width = width.saturating_sub(gaps) / n_windows;
-            [width, height].map(|side| side.clamp(1, largest))
+            let both = width.saturating_sub(GAP * (n_windows - 1));
+            let own = match role {
+                Role::Crash => both.div_ceil(n_windows),
+                Role::Stamped => both / n_windows,
+            };
+            [own, height].map(|side| side.clamp(1, largest))
         }
     }
 }
@@ -116,12 +120,19 @@ mod tests {
     #[test]
     fn pictures_have_the_size_that_was_chosen() {
         let shown = [500, 400];
-        assert_eq!(size_of(shown, PictureSize::Window(4), 2), [2000, 1600]);
-        let full = PictureSize::Pixels([1920, 1080]);
-        assert_eq!(size_of(shown, full, 1), [1920, 1080]);
-        let [half, height] = size_of(shown, full, 2);
-        assert_eq!((2 * half + GAP, height), (1920, 1080));
-        assert_eq!(size_of([3000, 10], PictureSize::Window(4), 1), [3000, 10]);
+        let [left, right] = [Role::Crash, Role::Stamped];
+        let four = PictureSize::Window(4);
+        assert_eq!(size_of(shown, four, (left, 2)), [2000, 1600]);
+        for width in [1920, 1921] {
+            let full = PictureSize::Pixels([width, 1080]);
+            for role in Role::ALL {
+                assert_eq!(size_of(shown, full, (role, 1)), [width, 1080]);
+            }
+            let both = [left, right].map(|role| size_of(shown, full, (role, 2)));
+            assert_eq!(both[0][0] + GAP + both[1][0], width);
+            assert_eq!(both.map(|size| size[1]), [1080; 2]);
+        }
+        assert_eq!(size_of([3000, 10], four, (left, 1)), [3000, 10]);
     }
 
     #[test]
