@@ -131,7 +131,7 @@ pub struct MapRun {
     pub n_read_errors: u64,
     /// The crash part as it was mapped onto.
     pub target: TargetPart,
-    /// For each element of `target` its index in the crash model's shells.
+    /// For each element of `target` its index in the crash model's shells, rising.
     pub shells: Vec<u32>,
     /// The stamped parts as they were mapped from.
     pub sources: Vec<SourcePart>,
@@ -148,6 +148,11 @@ pub struct MapRun {
 }
 
 impl MapRun {
+    /// The element of `target` that a shell of the crash model is, if it was mapped onto. O(log elements).
+    pub fn element_of(&self, shell: u32) -> Option<usize> {
+        self.shells.binary_search(&shell).ok()
+    }
+
     /// The stamped part that gave an element its values, and the shell of its model that did; `None` if none
     /// did. Both are numbers in the order of the parts and of the model.
     pub fn giver(&self, element: usize) -> Option<(usize, usize)> {

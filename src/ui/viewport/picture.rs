@@ -90,6 +90,8 @@ pub(super) struct Hit {
     pub part: Option<PartRef>,
     /// Number of the element in the deck, on the full mesh.
     pub element: Option<u64>,
+    /// Its place among the shells of the model, if it is one.
+    pub shell: Option<u32>,
     /// The nearest corner, and its number in the deck if it is a node.
     pub node: Point3,
     pub node_id: Option<u64>,
@@ -375,12 +377,16 @@ fn hit_layer(
             let (node, node_id) = layer.mesh.nearest_node(&hit);
             let part = layer.mesh.part_id(index);
             let is_full = layer.mesh.source.level.is_none();
-            let element = is_full.then(|| layer.mesh.source.part.element_id(hit.triangle));
+            let loaded = &layer.mesh.source.part;
+            let element = is_full.then(|| loaded.element_id(hit.triangle));
+            let shell = is_full.then(|| loaded.ids.element_of(hit.triangle));
+            let is_shell = |shell: &u32| (*shell as usize) < loaded.model.shells.len();
             let hit = Hit {
                 point,
                 role: layer.role,
                 in_part: hit.point,
                 element: element.flatten(),
+                shell: shell.flatten().filter(is_shell),
                 // Parts that are chosen and hidden are those of the two decks.
                 part: part.filter(|_| !layer.is_further()).map(|id| PartRef {
                     role: layer.role,

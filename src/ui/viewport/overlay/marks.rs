@@ -212,7 +212,7 @@ fn file_name(state: &AppState, hit: &Hit) -> Option<String> {
 /// The value of the element under the cursor, where it is known without the others; the colours blend it with those
 /// around.
 fn element_value(state: &AppState, kind: FieldKind, hit: &Hit) -> Option<f64> {
-    let id = hit.element?;
+    let shell = hit.shell?;
     let by = match kind {
         FieldKind::Thickness => ColorBy::Thickness,
         FieldKind::Forming(value) => value.into(),
@@ -222,7 +222,7 @@ fn element_value(state: &AppState, kind: FieldKind, hit: &Hit) -> Option<f64> {
         && let Some(run) = state.mapped_for(by)
     {
         let shown = state.shown_value(by);
-        let value = run.shown(state.document.mapped_element(id)?, &shown);
+        let value = run.shown(run.element_of(shell)?, &shown);
         let factor = shown.value.map_or(1.0, FormingValue::shown_factor);
         return Some(value * factor).filter(|value| value.is_finite());
     }
@@ -233,8 +233,7 @@ fn element_value(state: &AppState, kind: FieldKind, hit: &Hit) -> Option<f64> {
         Some(file) => &file.loaded,
         None => &state.document.part(hit.role)?.loaded,
     };
-    let shell = part.model.shells.iter().position(|shell| shell.id == id)?;
-    let mean = part.model.mean_shell_thickness(shell as u32)?;
+    let mean = part.model.mean_shell_thickness(shell)?;
     let mean = mean * part.settings.length_factor;
     Some(mean).filter(|mean| *mean > 0.0)
 }
