@@ -22,6 +22,7 @@ use shapematch::jobs::{
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::load::prepare;
 use shapematch::role::Role;
+use shapematch::ui::keyboard::Keyboard;
 use shapematch::ui::viewport::Viewports;
 
 use super::layout::{Painted, texts};
@@ -44,10 +45,11 @@ fn sheet() -> TriMesh {
     TriMesh::new(positions, (0..96).flat_map(cell).collect()).unwrap()
 }
 
-/// A program without shell and panels: two windows side by side over a state.
+/// A program without shell and panels: two windows side by side over a state, with the keys of the window.
 pub struct Desk {
     pub state: AppState,
     pub viewports: Viewports,
+    keyboard: Keyboard,
     seen: Vec<Command>,
     n_jobs: u64,
 }
@@ -61,6 +63,7 @@ impl Desk {
         Self {
             state: AppState::new(settings),
             viewports: Viewports::new(render_state),
+            keyboard: Keyboard::default(),
             seen: Vec::new(),
             n_jobs: 0,
         }
@@ -127,7 +130,8 @@ fn done(kind: JobKind) -> JobOutput {
 }
 
 pub fn show(ui: &mut egui::Ui, desk: &mut Desk) {
-    let whole = ui.max_rect();
+    let (whole, ctx) = (ui.max_rect(), ui.ctx().clone());
+    desk.keyboard.begin(&ctx, &desk.state, false);
     let mut commands = Vec::new();
     for role in Role::ALL {
         let area = window(whole, role);
@@ -136,9 +140,15 @@ pub fn show(ui: &mut egui::Ui, desk: &mut Desk) {
             desk.viewports.show(ui, role, &desk.state, &mut commands);
         });
     }
+    desk.keyboard.collect(&ctx);
     for command in commands {
         desk.seen.push(command.clone());
         desk.apply(command);
+    }
+    desk.keyboard.uncover(&desk.state, false);
+    while let Some(command) = desk.keyboard.next(&ctx, &desk.state) {
+        desk.apply(command);
+        ctx.request_repaint();
     }
 }
 
@@ -394,6 +404,11 @@ fn arrow_keys_turn_the_window_that_has_the_focus() {
     harness.run_steps(2);
     assert!(harness.state().camera(Role::Stamped).height > before.height);
     assert_eq!(harness.state().state.view.focus, Role::Stamped);
+    // Keys of actions reach the window that has the focus.
+    harness.key_press(egui::Key::F);
+    harness.run_steps(2);
+    let state = &harness.state().state;
+    assert!(state.view.is_fitted(Role::Stamped));
 }
 
 #[test]
@@ -770,6 +785,10 @@ fn the_pivot_is_picked_under_the_pointer_and_forgotten() {
         (old.x - new.x).hypot(old.y - new.y) < 0.1,
         "the pivot stays"
     );
+    // The same key forgets it again, and once only.
+    harness.key_press(egui::Key::P);
+    harness.run_steps(2);
+    assert_eq!(*harness.state().state.view.pivot.get(Role::Crash), None);
 }
 
 #[test]

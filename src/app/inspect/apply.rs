@@ -12,6 +12,7 @@ use crate::geometry::{Point3, Similarity};
 use crate::jobs::{CompareInput, JobKey, JobKind, Stamp};
 use crate::pipeline::inspect::Comparison;
 use crate::role::Role;
+use crate::search::ClosestPoint as _;
 
 /// A comparison as quick as this follows every move of the hand.
 const LIVE: Duration = Duration::from_millis(100);
@@ -137,22 +138,23 @@ fn compare(work: &mut Work<'_>, shown: &Similarity) -> Vec<Effect> {
     vec![work.start(JobKind::Compare(input))]
 }
 
-/// A label at the node next to a point; one that is there already stays the only one.
+/// A label at the node next to a point, of the triangle that the point lies on; one that is there already stays the
+/// only one.
 fn pin(work: &mut Work<'_>, role: Role, point: &Point3) {
     let Some(part) = work.document.part(role) else {
         return;
     };
-    let positions = part.loaded.mesh.positions();
-    let distance = |p: &Point3| (p - point).norm_squared();
-    let nearest = positions
-        .iter()
-        .enumerate()
-        .min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
-    let Some((vertex, position)) = nearest else {
+    let tree = part.loaded.surface.bvh();
+    let Some(hit) = tree.closest(point, f64::INFINITY, None, None) else {
         return;
     };
-    let vertex = vertex as u32;
-    let (revision, position) = (part.revision, *position);
+    let (mesh, revision) = (&part.loaded.mesh, part.revision);
+    let corners = mesh.triangles()[hit.triangle as usize];
+    let corners = corners.map(|vertex| (vertex, mesh.positions()[vertex as usize]));
+    let distance = |corner: &(u32, Point3)| (corner.1 - point).norm_squared();
+    let [first, others @ ..] = corners;
+    let nearer = |a, b| if distance(&b) < distance(&a) { b } else { a };
+    let (vertex, position) = others.into_iter().fold(first, nearer);
     let is_there = |label: &Label| label.part == revision && label.vertex == vertex;
     if work.document.labels.iter().any(is_there) {
         return;
