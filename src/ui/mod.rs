@@ -19,6 +19,7 @@ mod picture_options;
 mod pictures;
 pub mod preferences;
 pub mod project_dialogs;
+mod row_end;
 pub mod shell;
 mod system_fonts;
 pub mod theme;

@@ -4,7 +4,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use shapematch::app::{
-    Axis, Dialog, MatchCommand, MoveCommand, PartCommand, PartRef, Section, ViewCommand,
+    Axis, BottomTab, Dialog, MatchCommand, MoveCommand, PartCommand, PartRef, Section, ViewCommand,
 };
 use shapematch::registration::Method;
 use shapematch::role::Role;
@@ -160,6 +160,55 @@ fn what_has_the_keyboard_can_be_told() {
         window.run_steps(2);
     }
     assert!(window.query_by_label("1 Load & display").is_some());
+}
+
+/// Where what has the keyboard lies.
+fn focused_place(window: &Window) -> Option<(String, egui::Rect)> {
+    let mut queue = vec![window.root()];
+    while let Some(node) = queue.pop() {
+        if node.is_focused() {
+            return Some((node.accesskit_node().label()?, node.rect()));
+        }
+        queue.extend(node.children());
+    }
+    None
+}
+
+/// From one widget to the one beside it Tab goes to the right, also where a row ends at the right edge.
+#[test]
+fn tab_goes_through_a_row_from_left_to_right() {
+    let mut window = super::story::matched();
+    super::layout::dismiss_toasts(&mut window);
+    let mut seen = Vec::new();
+    for tab in [BottomTab::Log, BottomTab::Deviation] {
+        let ctx = window.ctx.clone();
+        let open = [
+            ViewCommand::SetTab(tab),
+            ViewCommand::OpenSection(Section::Load, true),
+        ];
+        let open = open.map(Into::into).to_vec();
+        window.state_mut().run_commands(open, &ctx);
+        finish(&mut window);
+        let mut last: Option<(String, egui::Rect)> = None;
+        for _ in 0..120 {
+            window.key_press(Key::Tab);
+            window.run_steps(2);
+            let now = focused_place(&window);
+            if let (Some((before, from)), Some((name, to))) = (&last, &now) {
+                let is_beside = (from.center().y - to.center().y).abs() < 6.0;
+                let is_left = to.right() <= from.left() && from.left() - to.right() < 40.0;
+                assert!(
+                    !is_beside || !is_left,
+                    "{tab:?}: from {before:?} back to {name:?}"
+                );
+            }
+            seen.extend(now.iter().map(|(name, _)| name.clone()));
+            last = now;
+        }
+    }
+    for name in ["Save log…", "Edges", "Nodes", "Search commands"] {
+        assert!(seen.iter().any(|seen| seen == name), "{name:?}: {seen:?}");
+    }
 }
 
 /// Selects a part of the crash deck, for Escape to let go where nothing else is open.

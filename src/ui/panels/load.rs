@@ -14,6 +14,7 @@ use crate::jobs::JobKey;
 use crate::role::Role;
 use crate::text::{counted, tidy_factor};
 use crate::ui::focus;
+use crate::ui::row_end::RowEnd;
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
     Look, action_button, caption, chip, grouped, icon_button, role_mark, secondary, square, tight,
@@ -255,15 +256,10 @@ const NAMED_COLOUR: f32 = 190.0;
 fn display_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut display: Display = state.view.display.clone();
     let size = vec2(ui.available_width(), ROW);
-    ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
+    ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
         ui.spacing_mut().button_padding.x = 7.0;
-        if chip(ui, "Nodes", display.has_points).clicked() {
-            display.has_points ^= true;
-        }
-        if chip(ui, "Edges", display.has_edges).clicked() {
-            display.has_edges ^= true;
-        }
-        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+        let end = RowEnd::new(ui, "display");
+        end.before(ui, |ui| {
             // In a narrow column what is chosen is worth more than the word before it.
             if ui.available_width() > NAMED_COLOUR {
                 secondary(ui, "Colour");
@@ -287,6 +283,14 @@ fn display_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                     }
                 });
             });
+        });
+        end.show(ui, |ui| {
+            if chip(ui, "Edges", display.has_edges).clicked() {
+                display.has_edges ^= true;
+            }
+            if chip(ui, "Nodes", display.has_points).clicked() {
+                display.has_points ^= true;
+            }
         });
     });
     if display != state.view.display {

@@ -20,6 +20,7 @@ use crate::pipeline::names::file_name;
 use crate::role::Role;
 use crate::settings::{MAP_SETTINGS, Setting};
 use crate::text::{Lengths, fixed, grouped, length, percent, sentence, share};
+use crate::ui::row_end::RowEnd;
 use crate::ui::theme::{Palette, ROW, TALL};
 use crate::ui::widgets::{
     Look, action_button, caption, card, chip, paragraph, plain_action, secondary, wide_action,
@@ -92,11 +93,11 @@ fn quantities_ui(ui: &mut Ui, state: &AppState, has_list: bool, commands: &mut V
                 });
             }
             if is_last {
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    GEAR.ui(ui, has_own);
+                RowEnd::new(ui, "quantities").show(ui, |ui| {
                     if !has_list {
                         plain_action(ui, state, Action::AddStamped, commands);
                     }
+                    GEAR.ui(ui, has_own);
                 });
             }
         });

@@ -19,6 +19,7 @@ pub mod result;
 pub mod section;
 mod setting_form;
 pub mod stamped_files;
+mod tolerance;
 pub mod top_bar;
 pub mod units;
 

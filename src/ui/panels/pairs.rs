@@ -6,6 +6,7 @@ use crate::app::{Action, AppState, Command, PairCommand, PointPair};
 use crate::registration::PointPairFit;
 use crate::role::Role;
 use crate::text::{counted, sentence};
+use crate::ui::row_end::RowEnd;
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
     Look, action_button, caption, card, icon_button, paragraph, role_mark, secondary,
@@ -44,16 +45,16 @@ pub fn pairs_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 fn head_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         ui.label("Point pairs");
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        RowEnd::new(ui, "pairs").show(ui, |ui| {
             let button = |label: &'static str| Button::new(label).min_size(vec2(0.0, ROW));
+            if !state.document.current_pairs().is_empty() && ui.add(button("Delete all")).clicked()
+            {
+                commands.push(PairCommand::DeleteAll.into());
+            }
             let is_on = state.pairs.tool.is_some();
             let label = if is_on { "Done" } else { "Pick more" };
             if ui.add(button(label)).clicked() {
                 commands.push(PairCommand::ToggleTool.into());
-            }
-            if !state.document.current_pairs().is_empty() && ui.add(button("Delete all")).clicked()
-            {
-                commands.push(PairCommand::DeleteAll.into());
             }
         });
     });

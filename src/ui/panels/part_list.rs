@@ -8,6 +8,7 @@ use super::part_row::{Columns, Row, count_text, row_ui, thickness_text};
 use crate::app::filter::PartFilter;
 use crate::app::{AppState, ColorBy, Command, LikeWhat, PartCommand, PartRef};
 use crate::role::{PerRole, Role};
+use crate::ui::row_end::RowEnd;
 use crate::ui::theme::ROW;
 use crate::ui::widgets::{caption, chip, draft, grouped, icon_button, set_draft, text_field};
 
@@ -51,22 +52,29 @@ fn filter_ui(ui: &mut Ui, state: &AppState, n_parts: usize, commands: &mut Vec<C
     }
     let can_order = state.document.both().is_some();
     let size = vec2(ui.available_width(), ROW);
-    ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
-        if can_order {
-            order_ui(ui, state, commands);
-        }
-        // It stands there always: a button that came with the first letter moved the field away.
-        if icon_button(ui, "×", "Clear the filter", !text.is_empty()).clicked() {
-            text.clear();
-        }
-        let field = egui::TextEdit::singleline(&mut text)
-            .id(id.with("field"))
-            .hint_text("2000012, 100-200, pillar, t>1.4")
-            .margin(egui::Margin::symmetric(8, 3))
-            .desired_width(ui.available_width());
-        text_field(ui, field)
-            .on_hover_text("Ids, a range of ids, words of the name, thickness; a comma means or")
-            .accessible_name("Filter parts");
+    ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+        let end = RowEnd::new(ui, "filter");
+        end.before(ui, |ui| {
+            let field = egui::TextEdit::singleline(&mut text)
+                .id(id.with("field"))
+                .hint_text("2000012, 100-200, pillar, t>1.4")
+                .margin(egui::Margin::symmetric(8, 3))
+                .desired_width(ui.available_width());
+            text_field(ui, field)
+                .on_hover_text(
+                    "Ids, a range of ids, words of the name, thickness; a comma means or",
+                )
+                .accessible_name("Filter parts");
+        });
+        end.show(ui, |ui| {
+            // It stands there always: a button that came with the first letter moved the field away.
+            if icon_button(ui, "×", "Clear the filter", !text.is_empty()).clicked() {
+                text.clear();
+            }
+            if can_order {
+                order_ui(ui, state, commands);
+            }
+        });
     });
     set_draft(ui, id, text.clone());
     text

@@ -4,21 +4,20 @@ use egui::{Button, RichText, Ui, vec2};
 
 use super::explain;
 use super::part_question::alike_parts_ui;
+use super::tolerance::tolerance_ui;
 use crate::app::{
     Action, AppState, Axis, Command, ExportCommand, MatchCommand, MatchResult, Section,
 };
 use crate::assess::{Ambiguity, Coverage, OneSided, Reason, alternative_words, likely_beside};
 use crate::jobs::Stamp;
-use crate::registration::{Alternative, group_starts, limits};
+use crate::registration::{Alternative, group_starts};
 use crate::report::distances::{OVERLAP_HELP, OVERLAP_SPREAD};
 use crate::report::{DIRECTION, PoseRecord, few_agree_words, number, start_kinds};
 use crate::role::{PerRole, Role};
-use crate::settings::setting;
 use crate::text::{capital, fixed, sentence, vector, whole_percent};
 use crate::ui::panels::mapping::STALE;
 use crate::ui::panels::top_bar::copy_forms_ui;
 use crate::ui::theme::{Palette, ROW, UNIT};
-use crate::ui::typed::{Takes, told_field};
 use crate::ui::widgets::{
     Look, action_tooltip, caption, card, chip, figure, figure_fits, focus_ring, paragraph, percent,
     plain_action, square, tight, told_button, verdict_color,
@@ -186,8 +185,7 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
         });
         // An alternative is told from the best pose, whatever the tolerance.
         if result.alternative.is_none() && shown.is_none() {
-            let right = egui::Layout::right_to_left(egui::Align::Center);
-            ui.with_layout(right, |ui| tolerance_ui(ui, state, result, commands));
+            tolerance_ui(ui, state, result, commands);
         }
     });
     mirrored_ui(ui, result);
@@ -227,69 +225,6 @@ fn pose_number(state: &AppState, result: &MatchResult) -> String {
     result.alternative.map_or_else(String::new, |index| {
         format!(" – pose {} of {}", index + 2, state.n_equal_poses())
     })
-}
-
-const TOLERANCE_HELP: &str = "Shape tolerance: how far the shapes may differ besides springback. The \
-                              verdict follows at once; the pose stays. An empty field takes the automatic \
-                              tolerance";
-
-/// Air between the verdict and the name of the tolerance.
-const AIR: f32 = 6.0;
-
-/// The tolerance of the verdict; another one gives a new verdict. From right to left.
-fn tolerance_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mut Vec<Command>) {
-    let (Some(setting), Some(shape)) = (
-        setting("shape-tolerance"),
-        result.run.assessment.shape.as_ref(),
-    ) else {
-        return;
-    };
-    let mut recipe = state.document.recipe.clone();
-    let tolerance = &mut recipe.settings.shape_tolerance;
-    let is_automatic = *tolerance == 0.0;
-    let usual = shape.tolerance.remainder;
-    let mut shown = if is_automatic { usual } else { *tolerance };
-    let is_free = state.jobs.locking_job().is_none();
-    ui.add_enabled_ui(is_free, |ui| {
-        let auto = chip(ui, "auto", is_automatic);
-        let auto = auto.on_hover_text("The larger of 1 mm and the thickness of the sheet");
-        if auto.clicked() {
-            *tolerance = 0.0;
-        }
-        let takes = Takes::length(setting.label, state.lengths(), limits::LENGTH);
-        let lengths = state.lengths();
-        let before = shown;
-        let field = takes.field(&mut shown).speed(0.01 * usual).max_decimals(4);
-        let field = if is_automatic {
-            field.custom_formatter(move |value, _| lengths.number(value))
-        } else {
-            field
-        };
-        let field = told_field(ui, setting.label, before, field, |text| match text.trim() {
-            // The automatic one.
-            "" => Ok(0.0),
-            text => takes.read(text),
-        });
-        if field.on_hover_text(TOLERANCE_HELP).changed() {
-            *tolerance = shown;
-        }
-        // In a narrow column it would touch the verdict.
-        let font = egui::TextStyle::Small.resolve(ui.style());
-        let fits = |name: &&str| {
-            let color = egui::Color32::PLACEHOLDER;
-            let laid = ui
-                .painter()
-                .layout_no_wrap((*name).to_owned(), font.clone(), color);
-            laid.size().x + AIR < ui.available_width()
-        };
-        let name = [setting.label, "tolerance"].into_iter().find(fits);
-        if let Some(name) = name {
-            caption(ui, name);
-        }
-    });
-    if recipe != state.document.recipe {
-        commands.push(MatchCommand::SetRecipe(Box::new(recipe)).into());
-    }
 }
 
 /// How an alternative fits beside the best pose, and the statements that the best pose has too.

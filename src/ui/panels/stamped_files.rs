@@ -10,6 +10,7 @@ use crate::assess::Verdict;
 use crate::pipeline::map::pose_warning;
 use crate::role::Role;
 use crate::text::sentence;
+use crate::ui::row_end::RowEnd;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{
     caption, eye, file_swatch, icon_button, plain_action, role_mark, verdict_color,
@@ -39,7 +40,19 @@ fn row_ui(ui: &mut Ui, row: &StampedRow, state: &AppState, commands: &mut Vec<Co
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 5.0;
         sight_ui(ui, row, commands);
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        let end = RowEnd::new(ui, &row.path);
+        end.before(ui, |ui| {
+            let name = ui.add(egui::Label::new(&row.name).truncate());
+            name.on_hover_text(row.path.display().to_string());
+        });
+        end.show(ui, |ui| {
+            if let Some(units) = row.own_units {
+                let label = RichText::new(units.label()).small();
+                let label = ui.label(label.color(Palette::of(ui).secondary));
+                label.on_hover_text("The unit of this file; the menu of its pose sets it");
+            }
+            state_ui(ui, &row.state);
+            pose_ui(ui, row, state, commands);
             if let Some(revision) = row.removed_by {
                 let name = match row.state {
                     StampedState::Reading => format!("Stop reading {}", row.name),
@@ -49,18 +62,6 @@ fn row_ui(ui: &mut Ui, row: &StampedRow, state: &AppState, commands: &mut Vec<Co
                     commands.push(MapCommand::RemoveFurther(revision).into());
                 }
             }
-            pose_ui(ui, row, state, commands);
-            state_ui(ui, &row.state);
-            if let Some(units) = row.own_units {
-                let label = RichText::new(units.label()).small();
-                let label = ui.label(label.color(Palette::of(ui).secondary));
-                label.on_hover_text("The unit of this file; the menu of its pose sets it");
-            }
-            let left = Layout::left_to_right(Align::Center).with_main_align(Align::Min);
-            ui.with_layout(left, |ui| {
-                let name = ui.add(egui::Label::new(&row.name).truncate());
-                name.on_hover_text(row.path.display().to_string());
-            });
         });
     });
 }

@@ -2,8 +2,8 @@
 
 use egui::containers::menu::MenuState;
 use egui::{
-    Align, Button, Event, Id, Key, Layout, MenuBar, Modifiers, Popup, Response, RichText,
-    ScrollArea, Sense, Ui, pos2, vec2,
+    Button, Event, Id, Key, MenuBar, Modifiers, Popup, Response, RichText, ScrollArea, Sense, Ui,
+    pos2, vec2,
 };
 
 use super::rail::fold_ui;
@@ -18,6 +18,7 @@ use crate::report::{CardForm, MatrixForm};
 use crate::role::Role;
 use crate::ui::focus;
 use crate::ui::project_dialogs::recovered_menu_ui;
+use crate::ui::row_end::RowEnd;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{caption, focus_ring};
 
@@ -37,12 +38,14 @@ pub fn top_bar_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             let menus = menus_ui(ui, state, bottom, commands);
             turn_by_keys(ui, &menus);
         }
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            bell_ui(ui, state, commands);
-            if room >= MEDIUM {
+        let has_unit = room >= MEDIUM;
+        let is_search_wide = ui.available_width() > if has_unit { WIDE } else { WIDE - UNIT };
+        RowEnd::new(ui, "top bar").show(ui, |ui| {
+            search_ui(ui, is_search_wide, commands);
+            if has_unit {
                 window_unit_ui(ui, state);
             }
-            search_ui(ui, commands);
+            bell_ui(ui, state, commands);
         });
     });
 }
@@ -52,6 +55,9 @@ const MENU_GAP: f32 = 6.0;
 /// Room below which the menus are one, and below which the unit is left out.
 const NARROW: f32 = 480.0;
 const MEDIUM: f32 = 560.0;
+/// Room beside the menus from which on the search shows its key, and what of it the unit takes.
+const WIDE: f32 = 370.0;
+const UNIT: f32 = 104.0;
 
 /// The menus, each of which opens below `top` or, where it has no bar, anywhere in the window.
 fn menus_ui(ui: &mut Ui, state: &AppState, top: f32, commands: &mut Vec<Command>) -> Vec<Response> {
@@ -375,11 +381,9 @@ fn paint_bell(painter: &egui::Painter, at: egui::Pos2, color: egui::Color32) {
     painter.circle_filled(at + vec2(0.0, 5.6), 1.6, color);
 }
 
-fn search_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
+fn search_ui(ui: &mut Ui, is_wide: bool, commands: &mut Vec<Command>) {
     let palette = Palette::of(ui);
     ui.spacing_mut().button_padding.x = 8.0;
-    let room = ui.available_width();
-    let is_wide = room > 216.0;
     let text = if is_wide { "Search commands" } else { "Search" };
     let mut button = Button::new(RichText::new(text).color(palette.secondary))
         .fill(palette.panel)

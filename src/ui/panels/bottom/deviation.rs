@@ -13,6 +13,7 @@ use crate::geometry::Point3;
 use crate::pipeline::inspect::Comparison;
 use crate::report::distances::{COMPARED_P95, COMPARED_RMS};
 use crate::role::Role;
+use crate::ui::row_end::RowEnd;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{
     Look, action_button, caption, chip, icon_button, nothing_yet, percent, role_mark, text_field,
@@ -380,11 +381,8 @@ fn label_ui(
         if response.clicked() {
             commands.push(look_at(role, label.position, node.clone()));
         }
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let remove = icon_button(ui, "×", &format!("Remove the label at {node}"), true);
-            if remove.clicked() {
-                commands.push(InspectCommand::Remove(label.id).into());
-            }
+        let end = RowEnd::new(ui, label.id);
+        end.before(ui, |ui| {
             let mut name = label.name.clone();
             let field = TextEdit::singleline(&mut name)
                 .hint_text(&node)
@@ -447,3 +445,9 @@ fn csv(state: &AppState, comparison: &Comparison) -> String {
     }
     text
 }
+        end.show(ui, |ui| {
+            let remove = icon_button(ui, "×", &format!("Remove the label at {node}"), true);
+            if remove.clicked() {
+                commands.push(InspectCommand::Remove(label.id).into());
+            }
+        });

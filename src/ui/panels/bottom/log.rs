@@ -12,6 +12,7 @@ use crate::app::{
 };
 use crate::pipeline::outputs::Output;
 use crate::text::counted;
+use crate::ui::row_end::RowEnd;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{level_color, nothing_yet, paint_role_mark, plain_action};
 
@@ -183,12 +184,9 @@ fn row_ui(table_row: &mut TableRow<'_, '_>, row: &LogRow, is_narrow: bool, lines
 /// Total, build and threads on the left; copy and save on the right.
 fn sums_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let size = egui::vec2(ui.available_width(), ROW);
-    ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
-        if ui.button("Save log…").clicked() {
-            commands.push(ExportCommand::AskSave(Output::Log).into());
-        }
-        plain_action(ui, state, Action::CopyLog, commands);
-        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+    ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+        let end = RowEnd::new(ui, "log");
+        end.before(ui, |ui| {
             let color = Palette::of(ui).secondary;
             let text = RichText::new(sums(state)).small().color(color);
             ui.add(egui::Label::new(text).truncate());
@@ -241,3 +239,9 @@ fn text_cell(ui: &mut Ui, row: &LogRow, lines: Lines) {
         ui.add(label.wrap().show_tooltip_when_elided(false));
     }
 }
+        end.show(ui, |ui| {
+            plain_action(ui, state, Action::CopyLog, commands);
+            if ui.button("Save log…").clicked() {
+                commands.push(ExportCommand::AskSave(Output::Log).into());
+            }
+        });

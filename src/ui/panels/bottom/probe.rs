@@ -1,6 +1,6 @@
 //! One element of a mapping: where its values come from, both sides in numbers and through the thickness.
 
-use egui::{Align, Layout, RichText, Ui, vec2};
+use egui::{RichText, Ui, vec2};
 use egui_plot::{MarkerShape, Points};
 
 use super::charts;
@@ -8,6 +8,7 @@ use super::mapping::{column_ui, look_at_element, number};
 use crate::app::{Action, AppState, ColorBy, Command, InspectCommand, MapCommand, ProbeReport};
 use crate::role::Role;
 use crate::text::grouped;
+use crate::ui::row_end::RowEnd;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{Look, action_button, caption, paragraph, percent};
 
@@ -72,10 +73,8 @@ fn probe_head_ui(ui: &mut Ui, state: &AppState, probe: &ProbeReport, commands: &
             };
             commands.push(look.into());
         }
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let end = ("×", Look::Plain, vec2(ROW, ROW));
-            let button = action_button(ui, state, Action::EndProbe, end, commands);
-            button.accessible_name(Action::EndProbe.row().label);
+        RowEnd::new(ui, "probe").show(ui, |ui| {
+            pins_ui(ui, state, commands);
             let is_pinned = state.document.mapping.pins.contains(&probe.id);
             let pin = if is_pinned {
                 ("Pinned", Look::Primary, vec2(0.0, ROW))
@@ -84,7 +83,9 @@ fn probe_head_ui(ui: &mut Ui, state: &AppState, probe: &ProbeReport, commands: &
             };
             let button = action_button(ui, state, Action::PinProbe, pin, commands);
             button.accessible_name(Action::PinProbe.row().label);
-            pins_ui(ui, state, commands);
+            let end = ("×", Look::Plain, vec2(ROW, ROW));
+            let button = action_button(ui, state, Action::EndProbe, end, commands);
+            button.accessible_name(Action::EndProbe.row().label);
         });
     });
 }

@@ -14,6 +14,7 @@ use crate::report::start_kind_words;
 use crate::role::Role;
 use crate::text::{Lengths, counted, whole_percent};
 use crate::ui::focus::is_ringed;
+use crate::ui::row_end::RowEnd;
 use crate::ui::viewport::visible_parts::visible_parts;
 
 /// Width and height of the row of camera buttons, and the least width of the names beside it.
@@ -403,11 +404,11 @@ pub(super) fn buttons(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Comman
     shield(ui, area);
     let builder = UiBuilder::new()
         .max_rect(area.shrink(2.0))
-        .layout(Layout::right_to_left(Align::Center));
-    let row = ui.scope_builder(builder, |ui| {
+        .layout(Layout::left_to_right(Align::Center));
+    let buttons_ui = |ui: &mut Ui| {
         ui.spacing_mut().item_spacing.x = 1.0;
         ui.spacing_mut().button_padding = vec2(7.0, 2.0);
-        for (label, tooltip, command) in entries.into_iter().rev() {
+        for (label, tooltip, command) in entries {
             let is_on = label == "Link" && over.frame.state.view.are_linked;
             let text = RichText::new(label).size(11.5);
             let text = if is_on {
@@ -425,8 +426,10 @@ pub(super) fn buttons(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Comman
                 commands.push(command.into());
             }
         }
-    });
-    let used = row.response.rect.expand(2.0);
+        ui.min_rect()
+    };
+    let row = ui.scope_builder(builder, |ui| RowEnd::new(ui, "camera").show(ui, buttons_ui));
+    let used = row.inner.expand(2.0);
     let ground = Shape::rect_filled(used, CornerRadius::same(6), over.frame.look.plate);
     ui.painter().set(plate, ground);
 }

@@ -11,6 +11,7 @@ use super::tick_text;
 use crate::app::Command;
 use crate::colormap::{ColorScale, Pattern};
 use crate::text::{counted, length, signed};
+use crate::ui::row_end::RowEnd;
 use crate::ui::theme::{color, ink};
 use crate::ui::viewport::fields::{FieldKind, Summary};
 use crate::ui::viewport::overlay::Overlay;
@@ -96,17 +97,20 @@ pub(super) fn plain(
 /// The title in the width that the buttons beside it leave; returns its height.
 fn head(ui: &mut Ui, over: &Overlay<'_>, title: &str, commands: &mut Vec<Command>) -> f32 {
     let row = ui.horizontal(|ui| {
-        ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
-            super::fold(ui, over);
+        let end = RowEnd::new(ui, "legend");
+        end.before(ui, |ui| {
+            ui.with_layout(Layout::top_down(Align::Min), |ui| {
+                ui.add(egui::Label::new(RichText::new(title).size(12.0)).wrap());
+            });
+        });
+        end.show(ui, |ui| {
             let values = if over.kind.is_some_and(FieldKind::has_signed_colors) {
                 menu::Values::Signed
             } else {
                 menu::Values::Plain
             };
             menu::maps(ui, over, values, commands);
-            ui.with_layout(Layout::top_down(Align::Min), |ui| {
-                ui.add(egui::Label::new(RichText::new(title).size(12.0)).wrap());
-            });
+            super::fold(ui, over);
         });
     });
     row.response.rect.height()

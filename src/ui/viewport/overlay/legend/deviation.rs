@@ -13,6 +13,7 @@ use crate::report::distances::{COMPARED_P95, COMPARED_RMS};
 use crate::role::Role;
 use crate::text::capital;
 use crate::ui::pictures::clickable;
+use crate::ui::row_end::RowEnd;
 use crate::ui::theme::{Palette, color};
 use crate::ui::typed::{Takes, told_field};
 use crate::ui::viewport::overlay::Overlay;
@@ -170,9 +171,9 @@ fn title(ui: &mut Ui, over: &Overlay<'_>, role: Role, commands: &mut Vec<Command
             other.word()
         );
         response.on_hover_text(hint);
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            super::fold(ui, over);
+        RowEnd::new(ui, "legend").show(ui, |ui| {
             menu::maps(ui, over, menu::Values::Deviation, commands);
+            super::fold(ui, over);
         });
     });
 }
