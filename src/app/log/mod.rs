@@ -28,6 +28,11 @@ pub struct LogState {
 }
 
 impl LogState {
+    /// How many rows were left out before the first that is kept.
+    pub fn n_dropped(&self) -> usize {
+        self.log.n_dropped()
+    }
+
     /// The rows, oldest first.
     pub fn rows(&self) -> &[LogRow] {
         self.log.rows()

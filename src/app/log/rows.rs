@@ -6,6 +6,7 @@ use std::time::Duration;
 use super::LogStep;
 use crate::app::NoticeLevel;
 use crate::role::Role;
+use crate::text::counted;
 
 /// One line of the log pane, made from the result of a step.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,11 +53,19 @@ impl LogRow {
     }
 }
 
-/// The log pane's rows, oldest first.
+/// The log pane's rows, oldest first; the last ones of a long session.
 #[derive(Debug, Clone, Default)]
 pub struct Log {
     rows: Vec<LogRow>,
+    /// How many older ones were left out, and how long their steps took.
+    n_dropped: usize,
+    took_dropped: Duration,
 }
+
+/// Most rows that are kept.
+const MOST: usize = 5_000;
+/// So many of the oldest are left out at once.
+const DROPPED: usize = MOST / 10;
 
 impl Log {
     /// Adds a row; a message that repeats the one before only counts it up.
@@ -69,16 +78,27 @@ impl Log {
             }
             _ => self.rows.push(row),
         }
+        if self.rows.len() > MOST {
+            let dropped = self.rows.drain(..DROPPED);
+            self.took_dropped += dropped.filter_map(|row| row.took).sum::<Duration>();
+            self.n_dropped += DROPPED;
+        }
     }
 
-    /// All rows, the oldest first.
+    /// How many rows were left out before the first that is kept.
+    pub fn n_dropped(&self) -> usize {
+        self.n_dropped
+    }
+
+    /// The rows, the oldest first.
     pub fn rows(&self) -> &[LogRow] {
         &self.rows
     }
 
     /// The time of all steps together.
     pub fn total(&self) -> Duration {
-        self.rows.iter().filter_map(|row| row.took).sum()
+        let kept = self.rows.iter().filter_map(|row| row.took);
+        self.took_dropped + kept.sum::<Duration>()
     }
 
     /// The latest row about a step.
@@ -94,7 +114,11 @@ impl Log {
             let (at, text) = (clock_text(row.at), row.counted_text());
             format!("{at}\t{}\t{role}\t{text}\t{took}\n", row.step.label())
         };
-        self.rows.iter().map(line).collect()
+        let dropped = match self.n_dropped {
+            0 => String::new(),
+            n => format!("({} left out before)\n", counted(n, "row")),
+        };
+        dropped + &self.rows.iter().map(line).collect::<String>()
     }
 }
 
@@ -211,5 +235,28 @@ mod tests {
             log.push(row(NoticeLevel::Info, "loaded"));
         }
         assert_eq!(log.rows().len(), 4);
+    }
+
+    #[test]
+    fn a_long_log_keeps_its_last_rows_and_all_durations() {
+        let mut log = Log::default();
+        let n = 2 * MOST;
+        for number in 0..n {
+            log.push(LogRow {
+                took: Some(Duration::from_secs(1)),
+                ..row(NoticeLevel::Info, &format!("step {number}"))
+            });
+            assert!(log.rows().len() <= MOST);
+        }
+        assert_eq!(log.n_dropped() + log.rows().len(), n);
+        assert!(log.rows().len() > MOST - 2 * DROPPED);
+        assert_eq!(log.rows().last().unwrap().text, format!("step {}", n - 1));
+        assert_eq!(log.rows()[0].text, format!("step {}", log.n_dropped()));
+        assert_eq!(log.total(), Duration::from_secs(n as u64));
+        let dropped = counted(log.n_dropped(), "row");
+        assert!(
+            log.to_text()
+                .starts_with(&format!("({dropped} left out before)\n"))
+        );
     }
 }

@@ -1,9 +1,9 @@
 //! What was done, when, and how long it took.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use egui::text::LayoutJob;
-use egui::{Align, Layout, Rect, RichText, Sense, TextStyle, Ui, Vec2};
+use egui::{Align, FontId, Layout, Rect, RichText, Sense, TextStyle, Ui, Vec2};
 use egui_extras::{Column, TableBuilder, TableRow};
 
 use crate::app::{
@@ -27,8 +27,52 @@ const GAP: f32 = 8.0;
 /// In a pane narrower than this the time of day is left to the tooltip.
 const NARROW: f32 = 420.0;
 
-/// Rows that show their whole text, by their index.
+/// Rows that show their whole text, by their numbers since the program began.
 type Opened = BTreeSet<usize>;
+
+/// Heights of rows of several lines, measured once: laying out a text takes longer than a frame has for all of them.
+#[derive(Clone, Default)]
+struct Heights {
+    /// The width of the texts, their font and the pixels of a point.
+    look: Option<(f32, FontId, f32)>,
+    /// By the number of a row, with its lines and how often its message came.
+    known: BTreeMap<usize, (Lines, usize, f32)>,
+}
+
+impl Heights {
+    /// Forgets what was measured for texts of another look, and rows before this number.
+    fn keep(&mut self, ui: &Ui, room: f32, first: usize) {
+        let font = TextStyle::Body.resolve(ui.style());
+        let look = Some((room, font, ui.pixels_per_point()));
+        if self.look != look {
+            self.known.clear();
+            self.look = look;
+        }
+        while self
+            .known
+            .first_key_value()
+            .is_some_and(|(number, _)| *number < first)
+        {
+            self.known.pop_first();
+        }
+    }
+
+    /// One line, or as many as the text needs, up to these.
+    fn of(&mut self, ui: &Ui, number: usize, row: &LogRow, lines: Lines) -> f32 {
+        if lines == Lines::ONE {
+            return LINE;
+        }
+        match self.known.get(&number) {
+            Some((of, count, height)) if (*of, *count) == (lines, row.count) => *height,
+            _ => {
+                let room = self.look.as_ref().map_or(f32::INFINITY, |look| look.0);
+                let height = row_height(ui, row, lines, room);
+                self.known.insert(number, (lines, row.count, height));
+                height
+            }
+        }
+    }
+}
 
 /// The table, newest row in sight, and the sums.
 pub fn log_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -44,12 +88,13 @@ pub fn log_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let height = (ui.available_height() - ROW - ui.spacing().item_spacing.y).max(LINE);
     ui.allocate_ui(egui::vec2(ui.available_width(), height), |ui| {
         ui.set_min_height(height);
-        table_ui(ui, rows, height);
+        table_ui(ui, rows, state.log.n_dropped(), height);
     });
     sums_ui(ui, state, commands);
 }
 
-fn table_ui(ui: &mut Ui, rows: &[LogRow], height: f32) {
+/// `first`: the number of the first row.
+fn table_ui(ui: &mut Ui, rows: &[LogRow], first: usize, height: f32) {
     let id = egui::Id::unique("opened log rows");
     let mut opened: Opened = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     let is_narrow = ui.available_width() < NARROW;
@@ -65,10 +110,9 @@ fn table_ui(ui: &mut Ui, rows: &[LogRow], height: f32) {
     let beside = others + GAP + scroll.bar_width;
     let room = (ui.available_width() - beside).max(40.0);
     let fitting = Lines::that_fit(ui, height);
-    let lines_of = |index: usize| Lines::of(&rows[index], opened.contains(&index), fitting);
-    let heights: Vec<f32> = (0..rows.len())
-        .map(|index| row_height(ui, &rows[index], lines_of(index), room))
-        .collect();
+    let lines_of =
+        |index: usize| Lines::of(&rows[index], opened.contains(&(first + index)), fitting);
+    let heights = heights_of(ui, (rows, first), lines_of, room);
     let mut clicked = None;
     ui.spacing_mut().item_spacing = egui::vec2(GAP, 0.0);
     let mut table = TableBuilder::new(ui)
@@ -101,11 +145,32 @@ fn table_ui(ui: &mut Ui, rows: &[LogRow], height: f32) {
             });
         });
     if let Some(index) = clicked {
-        if !opened.remove(&index) {
-            opened.insert(index);
+        let number = first + index;
+        if !opened.remove(&number) {
+            opened.insert(number);
         }
         ui.data_mut(|data| data.insert_temp(id, opened));
     }
+}
+
+/// The height of each row.
+fn heights_of(
+    ui: &Ui,
+    (rows, first): (&[LogRow], usize),
+    lines_of: impl Fn(usize) -> Lines,
+    room: f32,
+) -> Vec<f32> {
+    let id = egui::Id::unique("heights of log rows");
+    // Measuring needs the fonts, which are not to be had while the data are held.
+    let take = |data: &mut egui::util::IdTypeMap| {
+        std::mem::take(data.get_temp_mut_or_default::<Heights>(id))
+    };
+    let mut heights = ui.data_mut(take);
+    heights.keep(ui, room, first);
+    let of_row = |(index, row)| heights.of(ui, first + index, row, lines_of(index));
+    let found = rows.iter().enumerate().map(of_row).collect();
+    ui.data_mut(|data| data.insert_temp(id, heights));
+    found
 }
 
 /// Lines that a row takes at most.
@@ -134,11 +199,8 @@ impl Lines {
     }
 }
 
-/// One line, or as many as the text needs, up to these.
+/// As many lines as the text needs, up to these.
 fn row_height(ui: &Ui, row: &LogRow, lines: Lines, room: f32) -> f32 {
-    if lines == Lines::ONE {
-        return LINE;
-    }
     let mut job = job_of(ui, row, lines);
     job.wrap.max_width = room;
     let galley = ui.painter().layout_job(job);
@@ -191,6 +253,12 @@ fn sums_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             let text = RichText::new(sums(state)).small().color(color);
             ui.add(egui::Label::new(text).truncate());
         });
+        end.show(ui, |ui| {
+            plain_action(ui, state, Action::CopyLog, commands);
+            if ui.button("Save log…").clicked() {
+                commands.push(ExportCommand::AskSave(Output::Log).into());
+            }
+        });
     });
 }
 
@@ -198,7 +266,11 @@ fn sums(state: &AppState) -> String {
     let total = duration_text(state.log.total());
     let threads = counted(rayon::current_num_threads(), "thread");
     let build = crate::report::build_id();
-    format!("total {total} · {threads} · build {build}")
+    let dropped = match state.log.n_dropped() {
+        0 => String::new(),
+        n => format!("{} left out · ", counted(n, "old row")),
+    };
+    format!("total {total} · {dropped}{threads} · build {build}")
 }
 
 fn text_of(row: &LogRow) -> String {
@@ -239,9 +311,3 @@ fn text_cell(ui: &mut Ui, row: &LogRow, lines: Lines) {
         ui.add(label.wrap().show_tooltip_when_elided(false));
     }
 }
-        end.show(ui, |ui| {
-            plain_action(ui, state, Action::CopyLog, commands);
-            if ui.button("Save log…").clicked() {
-                commands.push(ExportCommand::AskSave(Output::Log).into());
-            }
-        });
