@@ -2119,8 +2119,13 @@ fn the_picture_stays_where_it_is_when_another_map_has_another_legend() {
     let bare = seen(&mut window, room(1.0, none[0], none[1]));
     let first = seen(&mut window, room(1.0, wide[0], wide[1]));
     assert_ne!(first, bare, "the legend covers nothing of the part");
-    for [beside, above] in [slim, none, wide, slim] {
+    for [beside, above] in [slim, wide, slim] {
         assert_eq!(seen(&mut window, room(1.0, beside, above)), first);
+    }
+    // Without any legend the part has all the room again, as often as one comes and goes.
+    for _ in 0..2 {
+        assert_eq!(seen(&mut window, room(1.0, none[0], none[1])), bare);
+        assert_eq!(seen(&mut window, room(1.0, wide[0], wide[1])), first);
     }
     // From another side too.
     window.apply(ViewCommand::Standard(role, StandardView::Front));
@@ -2134,6 +2139,54 @@ fn the_picture_stays_where_it_is_when_another_map_has_another_legend() {
     let other_shape = seen(&mut window, room(1.5, slim[0], slim[1]));
     window.apply(ViewCommand::FitAll(role));
     assert_eq!(*window.state.view.cameras.get(role), other_shape);
+}
+
+#[test]
+fn a_part_fills_the_room_that_is_free_again() {
+    let mut window = Window::with_both();
+    let role = Role::Crash;
+    let seen = |window: &mut Window, covered: Covered| {
+        let aspect = 1.0;
+        window.apply(ViewCommand::SetRoom(role, ViewRoom { aspect, covered }));
+        *window.state.view.cameras.get(role)
+    };
+    let none = Covered::default();
+    let bare = seen(&mut window, none);
+    // A line at the foot, a line more in the header, the cube, a legend at either side.
+    let over = [
+        Covered {
+            bottom: 0.2,
+            ..none
+        },
+        Covered { top: 0.2, ..none },
+        Covered {
+            corner: [0.4, 0.4],
+            ..none
+        },
+        Covered {
+            beside: [0.0, 0.4],
+            above: 1.0,
+            ..none
+        },
+        Covered {
+            beside: [0.4, 0.0],
+            above: 1.0,
+            ..none
+        },
+    ];
+    let views = over.map(|covered| {
+        let view = seen(&mut window, covered);
+        assert_eq!(seen(&mut window, none), bare, "{covered:?}");
+        view
+    });
+    assert!(views[0] != bare && views[1] != bare);
+    assert!(views[3].height > bare.height && views[4].height > bare.height);
+    // A camera that the user moved stays where it is.
+    seen(&mut window, over[3]);
+    let mut by_hand = *window.state.view.cameras.get(role);
+    by_hand.height *= 0.9;
+    window.apply(ViewCommand::SetCamera(role, by_hand));
+    assert_eq!(seen(&mut window, none), by_hand);
 }
 
 #[test]

@@ -5,7 +5,10 @@ use std::time::{Duration, Instant};
 use egui::{Pos2, Rect, Shape, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use shapematch::app::{Action, BottomTab, Command, MoveCommand, NoticeCommand, Theme, ViewCommand};
+use shapematch::app::{
+    Action, BottomTab, ColorBy, Command, MoveCommand, NoticeCommand, Preview, PreviewCommand,
+    Theme, ViewCommand,
+};
 use shapematch::geometry::camera::ScreenSize;
 use shapematch::report::number;
 use shapematch::role::Role;
@@ -84,6 +87,25 @@ pub(super) fn faults<S>(window: &Harness<'static, S>) -> Vec<String> {
         }
     }
     faults.extend(overlapping_buttons(window));
+    faults.extend(over_cubes(window, &texts));
+    faults
+}
+
+/// Texts that lie over a view cube, whose own are letters.
+fn over_cubes<S>(window: &Harness<'static, S>, texts: &[Painted]) -> Vec<String> {
+    let mut faults = Vec::new();
+    for role in Role::ALL {
+        let name = format!("View cube ({})", role.word());
+        let Some(cube) = window.query_by_label(&name).map(|cube| cube.rect()) else {
+            continue;
+        };
+        for text in texts.iter().filter(|text| text.text.chars().count() > 1) {
+            let both = cube.intersect(text.rect.intersect(text.clip));
+            if both.width() > 1.0 && both.height() > 1.0 {
+                faults.push(format!("over the view cube: {:?} {}", text.text, text.rect));
+            }
+        }
+    }
     faults
 }
 
@@ -236,6 +258,85 @@ fn nothing_is_cut_in_any_tab() {
     }
     let n = all.len();
     assert!(all.is_empty(), "{n} faults\n{}", all.join("\n"));
+}
+
+/// The banner of a pose that is only looked at, or of one of several, has a place beside the view cube or above it.
+#[test]
+fn a_banner_lies_beside_the_view_cube() {
+    let mut window = matched();
+    let pin = PreviewCommand::Pin(Some(Preview::Start(0)));
+    act(&mut window, vec![pin.into()]);
+    dismiss_toasts(&mut window);
+    let is_banner = |text: &Painted| text.text.starts_with("Preview of start 1");
+    let mut n_shown = 0;
+    for is_folded in [true, false] {
+        for width in [800.0, 900.0, 1024.0, 1180.0, 1400.0, 1920.0] {
+            window.set_size(Vec2::new(width, 720.0));
+            window.run_steps(2);
+            act(&mut window, vec![ViewCommand::FoldColumn(is_folded).into()]);
+            window.run_steps(2);
+            let found = faults(&window);
+            assert!(
+                found.is_empty(),
+                "{width}, {is_folded}: {}",
+                found.join("\n")
+            );
+            n_shown += usize::from(texts(&window).iter().any(is_banner));
+        }
+    }
+    assert!(n_shown >= 10, "{n_shown}");
+}
+
+/// Names and numbers of the deviation are read whole beside each other in the narrowest window, with pinned labels
+/// and without.
+#[test]
+fn the_columns_of_the_deviation_are_whole_in_a_narrow_window() {
+    let mut window = matched();
+    act(
+        &mut window,
+        vec![ViewCommand::SetTab(BottomTab::Deviation).into()],
+    );
+    finish(&mut window);
+    dismiss_toasts(&mut window);
+    let names = [
+        "mean",
+        "RMS (compared)",
+        "P95 (compared)",
+        "min",
+        "max",
+        "standard deviation",
+    ];
+    for width in [800.0, 900.0, 1024.0, 1280.0] {
+        for is_folded in [true, false] {
+            window.set_size(Vec2::new(width, 900.0));
+            window.run_steps(2);
+            act(&mut window, vec![ViewCommand::FoldColumn(is_folded).into()]);
+            window.run_steps(3);
+            let texts = texts(&window);
+            let place = format!("{width}, {is_folded}");
+            let find = |name: &str| {
+                let mut all = texts.iter().filter(|text| text.text == name);
+                all.find(|text| text.clip.expand(0.5).contains_rect(text.rect))
+            };
+            let title = find("▲ → ■").unwrap_or_else(|| panic!("{place}: no column"));
+            for name in names {
+                let row = find(name).unwrap_or_else(|| panic!("{place}: {name:?} is cut"));
+                let middle = row.rect.center().y;
+                let numbers = texts.iter().filter(|text| {
+                    let is_beside = (text.rect.center().y - middle).abs() < 3.0;
+                    let right = text.rect.right();
+                    is_beside && right > row.rect.right() && right < title.rect.right() + 120.0
+                });
+                let whole = numbers.filter(|text| {
+                    !text.text.contains('…') && text.clip.expand(0.5).contains_rect(text.rect)
+                });
+                assert!(whole.count() >= 2, "{place}: the numbers of {name:?}");
+            }
+            let nodes = texts.iter().filter(|text| text.text.starts_with("node"));
+            let cut: Vec<_> = nodes.filter(|text| text.text.contains('…')).collect();
+            assert!(cut.is_empty(), "{place}: {:?}", cut[0].text);
+        }
+    }
 }
 
 /// The first start of a small window after files were opened: the question about the mouse is seen whole.
@@ -427,6 +528,36 @@ fn a_fitted_part_lies_beside_what_lies_over_the_window() {
     click(&mut window, "Fold the legend (crash)");
     window.run_steps(4);
     assert_eq!(window.state().state().view.cameras.crash, camera);
+}
+
+fn color_by(window: &mut Window, by: ColorBy) {
+    let mut display = window.state().state().view.display.clone();
+    display.color_by = by;
+    act(
+        window,
+        vec![ViewCommand::SetDisplay(Box::new(display)).into()],
+    );
+}
+
+/// What a map covers is the part's again as soon as its legend is gone, as often as it comes and goes.
+#[test]
+fn a_part_has_the_room_of_a_closed_legend_again() {
+    let mut window = matched();
+    dismiss_toasts(&mut window);
+    window.run_steps(20);
+    let height = |window: &Window| window.state().state().view.cameras.crash.height;
+    let bare = height(&window);
+    for _ in 0..2 {
+        color_by(&mut window, ColorBy::Thickness);
+        finish(&mut window);
+        wait_for(&mut window, "Unfold the legend (crash)");
+        window.run_steps(20);
+        assert!(height(&window) > bare * 1.02, "the legend covers nothing");
+        color_by(&mut window, ColorBy::default());
+        window.run_steps(20);
+        let now = height(&window);
+        assert!((now - bare).abs() < 0.02 * bare, "{now} {bare}");
+    }
 }
 
 #[test]

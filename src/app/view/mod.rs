@@ -198,11 +198,12 @@ impl ViewRoom {
     }
 
     /// This room with all that the legend has covered since the window was fitted into `before`: another map has a
-    /// legend of another size, and the picture must not jump with it. A window of another shape, and one whose legend
-    /// came to an edge that was free, is fitted anew.
+    /// legend of another size, and the picture must not jump with it. A window of another shape, one whose legend
+    /// came to an edge that was free, and one that has no legend any more, is fitted anew.
     fn keeping_legend_of(&self, before: &Self) -> Self {
         let has_other_shape = (self.aspect / before.aspect).ln().abs() > 0.01;
-        if has_other_shape || self.has_legend_where_free(before) {
+        let has_legend = self.covered.beside != [0.0; 2];
+        if has_other_shape || !has_legend || self.has_legend_where_free(before) {
             return *self;
         }
         let Covered { beside, above, .. } = self.covered.union(&before.covered);

@@ -25,7 +25,13 @@ const LINE: f32 = 20.0;
 const NUMBER: f32 = 16.0;
 
 /// A pane narrower than this has room for two lists.
-const NARROW: f32 = 640.0;
+const NARROW: f32 = 720.0;
+/// Air between the lists, and between the columns of one.
+const BETWEEN: f32 = 20.0;
+const GAP: f32 = 8.0;
+/// What a row of the places and one of the labels need.
+const SPOTS: f32 = 250.0;
+const LABELS: f32 = 200.0;
 
 /// Head line and three lists side by side.
 pub fn deviation_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -51,36 +57,50 @@ pub fn deviation_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) 
     let height = ui.available_height();
     let width = ui.available_width();
     let has_labels = state.document.shown_labels().next().is_some();
-    let columns = match (width < NARROW, has_labels) {
-        (false, _) => vec![
-            (300.0_f32.min(0.34 * width), Column3::Numbers),
-            (0.36 * width, Column3::Spots),
-            (0.24 * width, Column3::Labels),
-        ],
-        (true, false) => vec![
-            (0.48 * width, Column3::Numbers),
-            (0.46 * width, Column3::Spots),
-        ],
-        // What was pinned is looked at.
-        (true, true) => vec![
-            (0.5 * width, Column3::Spots),
-            (0.44 * width, Column3::Labels),
-        ],
-    };
+    let rows = rows(state, comparison);
+    let columns = columns(ui, (width, has_labels), rows_width(ui, &rows));
     ui.horizontal_top(|ui| {
-        ui.spacing_mut().item_spacing.x = 20.0;
+        ui.spacing_mut().item_spacing.x = BETWEEN;
         for (width, column) in columns {
             ui.allocate_ui_with_layout(vec2(width, height), Layout::top_down(Align::Min), |ui| {
                 ui.set_width(width);
-                ui.spacing_mut().item_spacing.x = 8.0;
+                ui.spacing_mut().item_spacing.x = GAP;
                 match column {
-                    Column3::Numbers => numbers_ui(ui, state, comparison),
+                    Column3::Numbers => numbers_ui(ui, state, comparison, &rows),
                     Column3::Spots => spots_ui(ui, state, comparison, commands),
                     Column3::Labels => labels_ui(ui, state, commands),
                 }
             });
         }
     });
+}
+
+/// The lists that have room, each with its width. The numbers have what their longest row needs, the other lists the
+/// rest.
+fn columns(ui: &Ui, (width, has_labels): (f32, bool), rows_width: f32) -> Vec<(f32, Column3)> {
+    let beside_bar = ui.spacing().scroll.bar_width;
+    let room = width - beside_bar - BETWEEN;
+    let numbers = rows_width.min(0.6 * room);
+    match (width < NARROW, has_labels) {
+        (false, _) => {
+            let rest = room - numbers - BETWEEN;
+            let labels = (0.42 * rest).max(LABELS.min(rest - SPOTS));
+            vec![
+                (numbers, Column3::Numbers),
+                (rest - labels, Column3::Spots),
+                (labels, Column3::Labels),
+            ]
+        }
+        (true, false) => vec![
+            (numbers, Column3::Numbers),
+            (room - numbers, Column3::Spots),
+        ],
+        // What was pinned is looked at.
+        (true, true) => vec![
+            (0.53 * room, Column3::Spots),
+            (0.47 * room, Column3::Labels),
+        ],
+    }
 }
 
 /// The three lists.
@@ -158,7 +178,7 @@ fn freshness_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 /// Name of a row and its value in both directions.
-fn rows(state: &AppState, comparison: &Comparison) -> Vec<(String, [String; 2])> {
+fn rows(state: &AppState, comparison: &Comparison) -> Vec<NumberRow> {
     let tolerance = state.deviation_scale().map_or(0.0, |scale| scale.tolerance);
     let deviation = &comparison.deviation;
     let both = [&deviation.source_on_target, &deviation.target_on_source];
@@ -197,8 +217,40 @@ fn rows(state: &AppState, comparison: &Comparison) -> Vec<(String, [String; 2])>
     rows
 }
 
-fn numbers_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison) {
-    let rows = rows(state, comparison);
+/// A row of numbers: its name and the values of both directions.
+type NumberRow = (String, [String; 2]);
+
+/// What the two directions are called.
+const WAYS: [&str; 2] = ["▲ → ■", "■ → ▲"];
+
+/// Widths of the names and of the values.
+fn row_widths(ui: &Ui, rows: &[NumberRow]) -> [f32; 2] {
+    let names = rows.iter().map(|(name, _)| name.as_str());
+    let values = rows.iter().flat_map(|(_, values)| values);
+    let values = values.map(String::as_str).chain(WAYS);
+    [widest(ui, names), widest(ui, values)]
+}
+
+/// Width of a column that holds these texts whole.
+fn widest<'a>(ui: &Ui, texts: impl Iterator<Item = &'a str>) -> f32 {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let width = |text: &str| {
+        let color = egui::Color32::PLACEHOLDER;
+        let laid = ui
+            .painter()
+            .layout_no_wrap(text.to_owned(), font.clone(), color);
+        laid.size().x
+    };
+    texts.map(width).fold(0.0, f32::max).ceil() + 1.0
+}
+
+/// Width of the longest row.
+fn rows_width(ui: &Ui, rows: &[NumberRow]) -> f32 {
+    let [names, values] = row_widths(ui, rows);
+    names + 2.0 * (GAP + values) + ui.spacing().scroll.bar_width + GAP
+}
+
+fn numbers_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison, rows: &[NumberRow]) {
     ui.spacing_mut().item_spacing.y = 0.0;
     if let Some(offset) = &comparison.deviation.source_on_target.stats.offset {
         let words = offset.words(|value| state.lengths().of(value));
@@ -207,20 +259,21 @@ fn numbers_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison) {
     }
     let unit = state.document.unit_suffix();
     let width = ui.available_width().round() as i32;
+    let [_, values] = row_widths(ui, rows);
     TableBuilder::new(ui)
-        .id_salt(("deviation numbers", width))
+        .id_salt(("deviation numbers", width, values as i32))
         .min_scrolled_height(0.0)
         .auto_shrink([false, false])
         .cell_layout(Layout::left_to_right(Align::Center))
         .column(Column::remainder().clip(true))
-        .columns(Column::exact(74.0), 2)
+        .columns(Column::exact(values), 2)
         .header(NUMBER, |mut header| {
             header.col(|ui| {
                 if !unit.is_empty() {
                     caption(ui, format!("lengths in{unit}"));
                 }
             });
-            for title in ["▲ → ■", "■ → ▲"] {
+            for title in WAYS {
                 header.col(|ui| {
                     right(
                         ui,
@@ -278,14 +331,19 @@ fn spots_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison, commands: &m
     ui.spacing_mut().interact_size.y = LINE;
     // A table keeps its columns: one for each width.
     let width = ui.available_width().round() as i32;
+    let values: Vec<String> = spots
+        .iter()
+        .map(|found| state.lengths().signed_of(found.spot.value))
+        .collect();
+    let value_width = widest(ui, values.iter().map(String::as_str));
     TableBuilder::new(ui)
-        .id_salt(("worst places", width))
+        .id_salt(("worst places", width, value_width as i32))
         .sense(Sense::click())
         .min_scrolled_height(0.0)
         .auto_shrink([false, false])
         .cell_layout(Layout::left_to_right(Align::Center))
         .column(Column::exact(18.0))
-        .column(Column::exact(84.0))
+        .column(Column::exact(value_width))
         .column(Column::remainder().clip(true))
         .column(Column::exact(30.0))
         .body(|body| {
@@ -293,7 +351,7 @@ fn spots_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison, commands: &m
                 let found = &spots[row.index()];
                 let role = found.role;
                 let place = found.spot.position;
-                let value = state.lengths().signed_of(found.spot.value);
+                let value = &values[row.index()];
                 let node = match found.node {
                     Some(node) => format!("node {node}"),
                     None => format!("vertex {}", found.spot.vertex),
@@ -302,12 +360,9 @@ fn spots_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison, commands: &m
                     role_mark(ui, role);
                 });
                 row.col(|ui| {
-                    ui.label(&value);
+                    ui.label(value);
                 });
-                row.col(|ui| {
-                    let text = RichText::new(&node).color(Palette::of(ui).secondary);
-                    ui.add(egui::Label::new(text).truncate());
-                });
+                row.col(|ui| node_ui(ui, &node));
                 row.col(|ui| {
                     let name = format!("Pin {value} at {node}");
                     let pin = ui
@@ -327,6 +382,15 @@ fn spots_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison, commands: &m
                 }
             });
         });
+}
+
+/// A node with its number; the number alone rather than cut.
+fn node_ui(ui: &mut Ui, node: &str) {
+    let has_room = widest(ui, [node].into_iter()) <= ui.available_width();
+    let number = node.split(' ').next_back().unwrap_or(node);
+    let text = RichText::new(if has_room { node } else { number });
+    let text = text.color(Palette::of(ui).secondary);
+    ui.add(egui::Label::new(text).truncate());
 }
 
 /// The pinned labels: value, place, name, the way to them, and the way out.
@@ -395,6 +459,12 @@ fn label_ui(
                 commands.push(InspectCommand::Rename { id, name, gesture }.into());
             }
         });
+        end.show(ui, |ui| {
+            let remove = icon_button(ui, "×", &format!("Remove the label at {node}"), true);
+            if remove.clicked() {
+                commands.push(InspectCommand::Remove(label.id).into());
+            }
+        });
     });
 }
 
@@ -445,9 +515,3 @@ fn csv(state: &AppState, comparison: &Comparison) -> String {
     }
     text
 }
-        end.show(ui, |ui| {
-            let remove = icon_button(ui, "×", &format!("Remove the label at {node}"), true);
-            if remove.clicked() {
-                commands.push(InspectCommand::Remove(label.id).into());
-            }
-        });

@@ -132,7 +132,7 @@ fn draw_ring(
 }
 
 /// The sentence, above the scale bar or the banner; returns how far it reaches up from the foot of the window.
-pub(super) fn sentence(ui: &Ui, over: &Overlay<'_>, has_banner: bool) -> Option<f32> {
+pub(super) fn sentence(ui: &Ui, over: &Overlay<'_>, banner: Option<f32>) -> Option<f32> {
     let (motion, _) = shown(over)?;
     let window = over.frame.rect();
     let painter = over.painter(ui);
@@ -149,11 +149,7 @@ pub(super) fn sentence(ui: &Ui, over: &Overlay<'_>, has_banner: bool) -> Option<
         over.frame.look.text,
         room.clamp(NARROWEST, WIDEST),
     );
-    let foot = if has_banner {
-        banner::TOP + AIR
-    } else {
-        banner::BOTTOM
-    };
+    let foot = banner.map_or(banner::BOTTOM, |top| top + AIR);
     let size = galley.size() + vec2(16.0, 8.0);
     let center = window.center_bottom() - vec2(0.0, foot + 0.5 * size.y);
     let plate = Rect::from_center_size(center, size);

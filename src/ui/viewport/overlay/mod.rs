@@ -93,9 +93,8 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     cube::show(ui, over, commands);
     header::show(ui, over);
     clickable(ui, |ui| header::buttons(ui, over, commands));
-    let has_banner = banner::show(ui, over, commands);
-    let sentence = freedom::sentence(ui, over, has_banner);
-    let banner = has_banner.then_some(banner::TOP);
+    let banner = banner::show(ui, over, commands);
+    let sentence = freedom::sentence(ui, over, banner);
     free::show(ui, over, commands);
     room::tell(over, legend, sentence.or(banner), commands);
 }

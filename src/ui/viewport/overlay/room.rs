@@ -50,8 +50,17 @@ fn covered(over: &Overlay<'_>, legend: Option<Rect>, foot: Option<f32>) -> Cover
     };
     if let Some(legend) = legend {
         cover(&mut covered, legend, window);
+    } else if is_legend_awaited(over) {
+        // The picture does not grow and shrink while the next map is worked out.
+        let last = over.frame.state.view.rooms.get(over.role()).covered;
+        (covered.beside, covered.above) = (last.beside, last.above);
     }
     covered
+}
+
+/// True while the colours that have a legend are still being made.
+fn is_legend_awaited(over: &Overlay<'_>) -> bool {
+    over.kind.is_some() && over.scale.is_none() && over.frame.picture.has_colored()
 }
 
 /// Adds what a legend covers, where it lies at an edge.
