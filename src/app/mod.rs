@@ -74,7 +74,7 @@ pub use pairs::{
 pub use palette::PaletteEntry;
 pub use parts::{
     FileCommand, LikeWhat, Likeness, MoreAlike, PartCommand, PartRef, PartsState, UnitHint,
-    UnitMemory, filter,
+    UnitMemory, filter, together,
 };
 pub use project::{Kept, ProjectCommand, ProjectState};
 pub use reduce::{LevelResult, ReduceCommand, ReduceState};

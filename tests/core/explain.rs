@@ -393,6 +393,13 @@ fn what_a_remedy_changed_is_undone_with_its_match_and_ends_with_its_parts() {
     }));
     assert_eq!(hand(&window), Hand::Same, "another crash part");
 
+    let mut window = with_remedies();
+    take_remedy(&mut window, "Match the opposite hand");
+    window.act(Action::ResetAll);
+    assert_eq!(hand(&window), Hand::Same, "as before the remedy");
+    window.act(Action::Undo);
+    assert_eq!(hand(&window), Hand::Mirrored, "with its result");
+
     let mut window = Window::with_both();
     let mut recipe = window.state.document.recipe.clone();
     recipe.settings.hand = Hand::Either;

@@ -87,7 +87,7 @@ fn parts_that_share_nodes_are_found_as_one_sheet() {
     let question = window.state.part_question().unwrap();
     assert_eq!(question.only(), Some(&[77, id][..]));
     assert_eq!(question.title(&window.state.document), format!("77 + {id}"));
-    window.apply(PartCommand::UseMostAlike);
+    window.apply(PartCommand::UseAlike(0));
     assert_eq!(window.part(Role::Crash).facts.used.len(), 2);
     window.act(Action::Undo);
     window.act(Action::MatchOrStop);
@@ -248,6 +248,11 @@ fn which_of_several_parts_is_meant_stays_open_until_the_user_has_chosen() {
     let asked = window.state.part_question().unwrap();
     assert_eq!(asked.only(), None);
     assert_eq!(asked.title(&window.state.document), "2000040, 52000040");
+    // Each can be chosen all the same.
+    let mut other = window_of_twice(folder.path());
+    other.apply(PartCommand::UseAlike(1));
+    let used = &other.state.document.part(Role::Crash).unwrap().facts.used;
+    assert!(used.iter().eq([&52_000_040]), "{used:?}");
     for _ in 0..2 {
         assert_eq!(verdict_of(&mut window), Verdict::Check);
     }

@@ -43,7 +43,8 @@ const HISTORY: &[ActionRow] = &[
     ActionRow {
         action: Action::ResetAll,
         label: "Reset to initial state",
-        tooltip: "Pose, levels, visibility and colours as after loading, without a result; one undo step",
+        tooltip: "Pose, levels, visibility and colours as after loading, without a result and what its remedies set; one undo \
+                  step",
         keys: Keys::NONE,
         enabled: any_part_unlocked,
         command: |_| some(HistoryCommand::ResetAll),

@@ -69,6 +69,7 @@ impl Work<'_> {
                 }
             }
             document.result = None;
+            document.end_remedies();
             let as_loaded = StampedPose::default().crash_from_stamped;
             if document.pose.crash_from_stamped != as_loaded {
                 document.pose = StampedPose {

@@ -184,8 +184,9 @@ impl AppState {
                 "Each of {title} alone is more like the stamped part than all together: choose one."
             ),
         };
-        let remedy = more.only().map(|ids| {
-            let commands = vec![PartCommand::UseMostAlike.into()];
+        let only = more.only().filter(|_| self.jobs.is_unlocked().is_ok());
+        let remedy = only.map(|ids| {
+            let commands = vec![PartCommand::UseAlike(0).into()];
             (format!("Match only {}", together(ids)), commands)
         });
         Some(Cause {

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::{MoreAlike, NewPart, PartCommand, PartRef, PartsState};
+use super::{NewPart, PartCommand, PartRef, PartsState};
 use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
 use crate::app::{AppState, Document, Effect, JobBoard, LogStep, NoticeLevel, Part, facts};
@@ -75,11 +75,11 @@ impl PartsState {
             PartCommand::UseOnly(part) => {
                 return self.use_parts(work, part.role, Selection::Parts(vec![part.id]));
             }
-            PartCommand::UseMostAlike => {
+            PartCommand::UseAlike(place) => {
                 let more = self.more_alike.as_ref();
                 let more = more.and_then(|more| more.current(work.document));
-                if let Some(ids) = more.and_then(MoreAlike::only) {
-                    let selection = Selection::Parts(ids.to_vec());
+                if let Some(ids) = more.and_then(|more| more.choices.get(place)) {
+                    let selection = Selection::Parts(ids.clone());
                     return self.use_parts(work, Role::Crash, selection);
                 }
             }

@@ -81,15 +81,26 @@ pub enum PartCommand {
     UseOnly(PartRef),
     /// The same, and match at once.
     MatchOnly(PartRef),
-    /// Match the part of the crash model that is most like the stamped part, or the parts that are one sheet, and no
-    /// other; nothing where several are as alike.
-    UseMostAlike,
+    /// Match one of the choices among the parts of the crash model that are most like the stamped part, and no other
+    /// part; by its place in [`MoreAlike`](super::MoreAlike).
+    UseAlike(usize),
     /// Match all parts of a deck.
     UseAll(Role),
     /// Sort the other deck's parts by likeness, or all as in the files.
     OrderLike(Option<LikeWhat>),
     /// Give a colour, or take it back.
     SetColor(PartRef, Option<[u8; 3]>),
+}
+
+impl PartCommand {
+    /// True if it changes which parts are matched, which no job may hold meanwhile.
+    pub fn chooses(&self) -> bool {
+        use PartCommand as Is;
+        matches!(
+            self,
+            Is::SetUsed(..) | Is::UseOnly(_) | Is::MatchOnly(_) | Is::UseAlike(_) | Is::UseAll(_)
+        )
+    }
 }
 
 impl FileCommand {

@@ -71,6 +71,14 @@ impl MoreAlike {
         }
     }
 
+    /// The titles of the parts of a choice: "2000041 Pillar outer + 2000042 Pillar inner".
+    pub fn titles(&self, document: &Document, place: usize) -> String {
+        let ids = self.choices.get(place).into_iter().flatten();
+        let role = Role::Crash;
+        let titles = ids.map(|&id| document.part_title(PartRef { role, id }));
+        titles.collect::<Vec<_>>().join(" + ")
+    }
+
     /// The title of one part, or the numbers of several: "2000040, 2000041 + 2000042 and 3 more".
     pub fn title(&self, document: &Document) -> String {
         if let Some(&[id]) = self.only() {
@@ -88,7 +96,7 @@ impl MoreAlike {
 }
 
 /// Parts that are matched as one: "2000041 + 2000042".
-pub(in crate::app) fn together(ids: &[u64]) -> String {
+pub fn together(ids: &[u64]) -> String {
     let ids: Vec<String> = ids.iter().map(u64::to_string).collect();
     ids.join(" + ")
 }

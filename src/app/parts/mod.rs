@@ -16,8 +16,7 @@ use std::path::PathBuf;
 
 pub use command::{FileCommand, PartCommand};
 pub(super) use files::NewPart;
-pub(in crate::app) use likeness::together;
-pub use likeness::{LikeWhat, Likeness, MoreAlike};
+pub use likeness::{LikeWhat, Likeness, MoreAlike, together};
 pub use unit_memory::UnitMemory;
 pub use units::UnitHint;
 pub(super) use units::length_factor_of;

@@ -17,7 +17,8 @@ pub fn likely_beside(score_ratio: f64) -> &'static str {
     by_ratio(score_ratio, ["more likely", "as likely", "less likely"])
 }
 
-/// How an alternative that is shown fits beside the best pose, as a sentence.
+/// How an alternative that is shown fits beside the best pose, as a sentence. The error is what the match minimised,
+/// which is not the RMS of all distances that stands beside it.
 pub fn alternative_words(score_ratio: f64, by_shape: bool) -> String {
     let worse = whole_percent(score_ratio - 1.0);
     if worse == whole_percent(0.0) {
@@ -26,7 +27,9 @@ pub fn alternative_words(score_ratio: f64, by_shape: bool) -> String {
         let likely = likely_beside(score_ratio);
         format!("An alternative: by its shape it is {likely} than the best pose.")
     } else {
-        format!("An alternative: its error is {worse} higher than that of the best pose.")
+        format!(
+            "An alternative: the error that the match minimised is {worse} higher than at the best pose."
+        )
     }
 }
 

@@ -3,7 +3,7 @@
 
 use egui::{Button, Label, Ui, vec2};
 
-use crate::app::{AppState, Command, MatchResult, PartCommand, PartRef};
+use crate::app::{AppState, Command, MatchResult, PartCommand, PartRef, together};
 use crate::assess::Reason;
 use crate::role::Role;
 use crate::text::counted;
@@ -13,8 +13,8 @@ use crate::ui::widgets::{caption, card};
 /// Parts that have a button each.
 const MOST: usize = 4;
 
-/// Names the part that is most like the stamped part, with a button for it and one for all. Of several that are equally
-/// alike nothing tells yet which is meant, or of which hand they are: they have no button.
+/// Names the part that is most like the stamped part, with a button for it and one for all; of several that are equally
+/// alike each has a button, because nothing tells yet which is meant.
 pub fn part_question_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let Some(more) = state.part_question() else {
         return;
@@ -35,23 +35,47 @@ pub fn part_question_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comman
         );
         ui.add(Label::new(text).wrap());
         ui.horizontal_wrapped(|ui| {
-            let label = match more.only() {
-                Some([_]) => Some("Match only this"),
-                Some(_) => Some("Match only these"),
-                None => None,
-            };
-            if label.is_some_and(|label| ui.button(label).clicked()) {
-                commands.push(PartCommand::UseMostAlike.into());
+            for (place, ids) in more.choices.iter().take(MOST).enumerate() {
+                let label = match (more.only(), ids.len()) {
+                    (Some(_), 1) => "Match only this".to_owned(),
+                    (Some(_), _) => "Match only these".to_owned(),
+                    (None, _) => format!("Only {}", together(ids)),
+                };
+                let help = format!(
+                    "The stamped part is matched to {} and to no other part",
+                    more.titles(&state.document, place)
+                );
+                choice_ui(ui, state, (&label, &help), || {
+                    commands.push(PartCommand::UseAlike(place).into());
+                });
             }
-            let all = ui.button("Match all as one");
-            if all
-                .on_hover_text("The stamped part is matched to all crash parts together")
-                .clicked()
-            {
+            let help = "The stamped part is matched to all crash parts together";
+            choice_ui(ui, state, ("Match all as one", help), || {
                 commands.push(PartCommand::UseAll(Role::Crash).into());
-            }
+            });
         });
+        if more.choices.len() > MOST {
+            more_ui(ui, more.choices.len() - MOST);
+        }
     });
+}
+
+/// A button that chooses parts, while no job holds the choice.
+fn choice_ui(ui: &mut Ui, state: &AppState, (label, help): (&str, &str), choose: impl FnOnce()) {
+    let can = state.jobs.is_unlocked();
+    let button = ui.add_enabled(can.is_ok(), Button::new(label));
+    let button = match can {
+        Ok(()) => button.on_hover_text(help),
+        Err(reason) => button.on_disabled_hover_text(format!("{help}\n{reason}")),
+    };
+    if button.clicked() {
+        choose();
+    }
+}
+
+/// That there are more than have a button.
+fn more_ui(ui: &mut Ui, n: usize) {
+    caption(ui, format!("… and {n} more in the list of section 1"));
 }
 
 /// Of a result that fits several crash parts about as well: a button for each, which chooses it and matches.
@@ -92,9 +116,6 @@ pub fn alike_parts_ui(
         }
     });
     if ids.len() > MOST {
-        caption(
-            ui,
-            format!("… and {} more in the list of section 1", ids.len() - MOST),
-        );
+        more_ui(ui, ids.len() - MOST);
     }
 }

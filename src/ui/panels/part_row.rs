@@ -267,9 +267,16 @@ pub fn menu_ui(ui: &mut Ui, row: &Row<'_>, state: &AppState, commands: &mut Vec<
         ],
         &[("Find parts like this", PartCommand::OrderLike(like))],
     ];
+    let is_free = state.jobs.is_unlocked();
     for items in groups {
         for (label, command) in items {
-            if ui.button(*label).clicked() {
+            let locked = is_free.as_ref().err().filter(|_| command.chooses());
+            let button = ui.add_enabled(locked.is_none(), egui::Button::new(*label));
+            let button = match locked {
+                Some(reason) => button.on_disabled_hover_text(reason.to_string()),
+                None => button,
+            };
+            if button.clicked() {
                 commands.push((*command).into());
                 ui.close();
             }

@@ -233,10 +233,10 @@ fn alternative_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, alternati
     let best = &result.run.assessment.coverage;
     let (rms, p95) = (lengths.number(best.rmse()), lengths.of(best.p95()));
     let said = alternative_words(alternative.score_ratio, alternative.by_shape);
-    paragraph(ui, said).on_hover_text(format!(
-        "{} at the best pose: {rms} · {p95}",
-        OVERLAP_SPREAD.name
-    ));
+    paragraph(ui, said);
+    // The same figures as below are those of this pose.
+    let name = OVERLAP_SPREAD.name;
+    paragraph(ui, format!("{name} at the best pose: {rms} · {p95}."));
     if state.is_unit_in_doubt() {
         return;
     }
