@@ -20,8 +20,10 @@ const BESIDE: f64 = 0.25;
 /// … and goes on after it no farther turned than by this angle, as along a corner and unlike around an end. Cosine
 /// of 120°.
 const TURNED: f64 = -0.5;
-/// So many places along the outlines of a part are looked at.
-const N_PLACES: f64 = 2000.0;
+/// At most so many places along the outlines of a part are looked at, …
+const N_PLACES: f64 = 1000.0;
+/// … and no closer together than so many times what borders may lie apart: a piece is wider.
+const SPACING: f64 = 1.5;
 
 /// Pieces of sheet at the outlines that only one part has. In target units and the target's frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -86,7 +88,7 @@ fn pieces(
     let outlines: Vec<&BorderCurve> = outlines.collect();
     let length: f64 = outlines.iter().map(|outline| outline.length).sum();
     let own_unit = unit * other_from_own.scale;
-    let spacing = (limit / own_unit).max(length / N_PLACES);
+    let spacing = (SPACING * limit / own_unit).max(length / N_PLACES);
     let found = outlines.into_par_iter().flat_map_iter(|outline| {
         let places = along(std::slice::from_ref(outline), spacing);
         let beyond = beyond(&places, other, other_from_own);

@@ -64,9 +64,6 @@ pub(super) fn statements(
         met.evidence.near = asked.near;
     }
     let mut shape = compared.shape(settings);
-    if let Some(met) = &compared.met {
-        shape.compare_outlines(&met.evidence);
-    }
     if let Some(met) = &compared.met
         && shape.met < OVERHANGS
     {
@@ -125,6 +122,7 @@ pub(super) fn mirrored_statement(
 struct Compared<'a> {
     tolerance: ShapeTolerance,
     borders: &'a BorderComparison<'a>,
+    outlines: Outlines,
     /// `None` where their surfaces do not meet.
     met: Option<Met<'a>>,
 }
@@ -157,6 +155,7 @@ impl<'a> Compared<'a> {
             met: met.map(|evidence| Met::of(evidence, &tolerance, outlines)),
             tolerance,
             borders,
+            outlines,
         }
     }
 
@@ -176,6 +175,9 @@ impl<'a> Compared<'a> {
         };
         let mut shape = ShapeStatement::of(&met.evidence, &met.fit, self.tolerance);
         shape.borders.other_trim = met.other_trim;
+        if self.outlines == Outlines::Compared {
+            shape.compare_outlines(&met.evidence);
+        }
         shape.is_offset_removed = settings.remove_offset && is_removed(&met.fit, &shape);
         shape
     }
