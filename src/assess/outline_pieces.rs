@@ -11,8 +11,11 @@ use crate::registration::Surface;
 use crate::search::ClosestPoint;
 
 /// A piece reaches beyond the other part by more than so many times what borders may lie apart: less is a matter of
-/// their trims.
+/// their trims, …
 const REACHES: f64 = 2.0;
+/// … and by more than this share of the mean edge length of the coarser mesh: less is what an element cuts off the corner
+/// of a lug or a notch.
+const CORNER: f64 = 0.6;
 /// A longer piece, as a share of the outline, is a side or an end that was trimmed elsewhere.
 const LONGEST: f64 = 0.2;
 /// Beside a piece the outline lies on the other part for at least this share of its length on each side, …
@@ -39,6 +42,15 @@ pub struct OutlinePieces {
     pub at: Point3,
 }
 
+/// Lengths in target units.
+#[derive(Debug, Clone, Copy)]
+struct Limits {
+    /// A place lies on the other part if it lies no farther beyond it.
+    beside: f64,
+    /// A piece reaches farther.
+    reaches: f64,
+}
+
 /// How far a piece reaches, and where.
 struct Piece {
     by: f64,
@@ -52,9 +64,13 @@ impl OutlinePieces {
         let (pose, back) = (evidence.pose, evidence.pose.inverse());
         let still = Similarity::identity();
         let (source, target) = (evidence.source, evidence.target);
+        let limits = Limits {
+            beside: limit,
+            reaches: (REACHES * limit).max(CORNER * evidence.borders.edge),
+        };
         let (of_source, of_target) = rayon::join(
-            || pieces(source, (target, &pose, 1.0), limit),
-            || pieces(target, (source, &back, pose.scale), limit),
+            || pieces(source, (target, &pose, 1.0), limits),
+            || pieces(target, (source, &back, pose.scale), limits),
         );
         let places = [(&of_source, &pose), (&of_target, &still)];
         let places = places.into_iter().flat_map(|(pieces, target_from_own)| {
@@ -77,25 +93,25 @@ impl OutlinePieces {
 }
 
 /// The pieces of a part, each with its place in the part's own frame. The other part comes with the motion to its
-/// frame and the length of its unit in target units, in which `limit` and the pieces are measured.
+/// frame and the length of its unit in target units, in which the pieces are measured.
 fn pieces(
     own: &Surface,
     (other, other_from_own, unit): (&Surface, &Similarity, f64),
-    limit: f64,
+    limits: Limits,
 ) -> Vec<Piece> {
     let outlines = curves_of(own);
     let outlines = outlines.iter().filter(|border| !border.is_hole);
     let outlines: Vec<&BorderCurve> = outlines.collect();
     let length: f64 = outlines.iter().map(|outline| outline.length).sum();
     let own_unit = unit * other_from_own.scale;
-    let spacing = (SPACING * limit / own_unit).max(length / N_PLACES);
+    let spacing = (SPACING * limits.beside / own_unit).max(length / N_PLACES);
     let found = outlines.into_par_iter().flat_map_iter(|outline| {
         let places = along(std::slice::from_ref(outline), spacing);
         let beyond = beyond(&places, other, other_from_own);
         let beyond: Vec<f64> = beyond.into_iter().map(|by| by * unit).collect();
-        runs(&beyond, limit)
-            .filter_map(|run| piece(&places, &beyond, run, limit))
-            .filter(|piece| piece.by > REACHES * limit)
+        runs(&beyond, limits.beside)
+            .filter_map(|run| piece(&places, &beyond, run, limits))
+            .filter(|piece| piece.by > limits.reaches)
             .collect::<Vec<_>>()
     });
     found.collect()
@@ -141,7 +157,7 @@ fn runs(values: &[f64], limit: f64) -> impl Iterator<Item = Run> {
 }
 
 /// What a run of places beyond the other part is, if it is a piece of the outline and no side or end of the part.
-fn piece(places: &[Place], beyond: &[f64], run: Run, limit: f64) -> Option<Piece> {
+fn piece(places: &[Place], beyond: &[f64], run: Run, limits: Limits) -> Option<Piece> {
     let n = places.len();
     if run.n as f64 > LONGEST * n as f64 {
         return None;
@@ -154,7 +170,7 @@ fn piece(places: &[Place], beyond: &[f64], run: Run, limit: f64) -> Option<Piece
     });
     let [before, after] = directions;
     let goes_on = before.dot(&after) > TURNED * before.norm() * after.norm();
-    let is_on_the_other = |i: usize| beyond[i % n] <= REACHES * limit;
+    let is_on_the_other = |i: usize| beyond[i % n] <= limits.reaches;
     let lies_beside = sides.into_iter().flatten().all(is_on_the_other);
     let inside = (run.first..run.first + run.n).map(|i| i % n);
     let farthest = inside.max_by(|&a, &b| beyond[a].total_cmp(&beyond[b]))?;

@@ -20,6 +20,11 @@ const LEFT: f64 = 0.5;
 
 /// Surfaces are fitted no less if no more is left on this share of them, which holds beads.
 pub(crate) const MOST_WITH_BEADS: f64 = 0.98;
+/// Outlines that lie together may push holes aside all the same if one is left farther off than this share of what is
+/// accepted, …
+const PUSHED: f64 = 0.5;
+/// … and do so if surfaces and holes alone leave no hole farther off than this share of that.
+const AGREE: f64 = 0.3;
 
 /// A stretch of border is reported if it is at least this share of the borders beside each other, …
 const STRETCH: f64 = 0.03;
@@ -137,20 +142,32 @@ impl<'a> SplitOutlines<'a> {
             }
         };
         let outlines = under(Fit::of(evidence));
-        let differs = outlines.share_apart() > 1.0 - STATED || outlines.fit.worst_hole() > limit;
-        let by_holes = differs.then(|| Fit::without_outlines(evidence));
+        let may_push = outlines.lie_apart(limit) || outlines.fit.worst_hole() > PUSHED * limit;
+        let by_holes = may_push.then(|| Fit::without_outlines(evidence));
         match by_holes.filter(|fit| outlines.bend_aside(evidence, fit, limit)) {
             Some(fit) => Some(under(fit)),
             None => Some(outlines),
         }
     }
 
+    /// Whether the fit leaves outlines or a hole farther apart than is accepted.
+    fn lie_apart(&self, limit: f64) -> bool {
+        self.share_apart() > 1.0 - STATED || self.fit.worst_hole() > limit
+    }
+
     /// Whether the outlines push holes aside that lie on each other where surfaces and holes alone are fitted, which
     /// fits the surfaces no less. Outlines of parts that were trimmed differently along a few sides look like a bend.
     fn bend_aside(&self, evidence: &PoseEvidence<'_>, by_holes: &Fit, limit: f64) -> bool {
         let remains = |fit: &Fit| evidence.contacts.at_share(&fit.left, MOST_WITH_BEADS);
+        let pushed = self.fit.worst_hole();
+        // Within what is accepted a hole may be off itself, unless all agree much better without the outlines.
+        let accepted = if self.lie_apart(limit) {
+            limit.min(pushed)
+        } else {
+            AGREE * pushed
+        };
         by_holes.holes.len() >= HOLES_THAT_HOLD
-            && by_holes.worst_hole() <= limit.min(self.fit.worst_hole())
+            && by_holes.worst_hole() <= accepted
             && remains(by_holes) <= remains(&self.fit) + UNREMARKABLE * limit
     }
 

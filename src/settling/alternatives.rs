@@ -89,7 +89,7 @@ pub fn chosen_by_shape(
     };
     let near = near.into_iter().zip(&candidates);
     let others = near
-        .map(|(other, candidate)| beside.rated(*other, candidate))
+        .filter_map(|(other, candidate)| beside.rated(*other, candidate))
         .chain(far.into_iter().copied())
         .chain([before]);
     Ok(Some(ChosenPose::new(winner.pose, others, source)))
@@ -111,13 +111,16 @@ impl Beside<'_> {
         same_pose(pose, &self.winner.pose, &self.part)
     }
 
-    /// An alternative, rated by the shapes where it settles.
-    fn rated(&self, other: Alternative, candidate: &Candidate) -> Alternative {
+    /// An alternative, rated by the shapes where it settles. One that settles at the winner's pose is no other: `None`.
+    fn rated(&self, other: Alternative, candidate: &Candidate) -> Option<Alternative> {
+        if self.is_winner(&candidate.pose) {
+            return None;
+        }
         let (winner, noise) = (self.winner, self.distances.noise);
         if winner.beats(candidate)
             || winner.lies_much_closer_without_difference_than(candidate, noise)
         {
-            return beaten(other);
+            return Some(beaten(other));
         }
         let fits_elsewhere = self.overhangs
             && candidate.is_equal_partial_fit_beside(winner, &self.distances)
@@ -129,9 +132,8 @@ impl Beside<'_> {
             let ratio = candidate.ratio_to(winner, noise);
             ratio.filter(|_| !self.borders_chose)
         };
-        // One that settles at the winner's pose is no other.
-        let is_other = !self.is_winner(&candidate.pose);
-        match ratio.filter(|ratio| is_other && *ratio < other.score_ratio) {
+        let better = ratio.filter(|ratio| *ratio < other.score_ratio);
+        Some(match better {
             Some(score_ratio) => Alternative {
                 target_from_source: candidate.pose,
                 score_ratio,
@@ -139,6 +141,6 @@ impl Beside<'_> {
                 ..other
             },
             None => other,
-        }
+        })
     }
 }

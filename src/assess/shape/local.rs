@@ -21,6 +21,9 @@ const BESIDE: f64 = 1.7;
 /// What reaches an outline over less than this share of how far it reaches inward is a bead that runs out there. What
 /// reaches it over more is an end, and springback bends ends most: of them as much is accepted as of the whole part.
 const LEAST_OF_END: f64 = 0.5;
+/// What lies beside more than this share of the outline is no end either, but the whole rim: the part is drawn deeper
+/// or less deep.
+const ALL_ROUND: f64 = 0.75;
 /// What springback bends turns about a line: in the mean it lies beyond the tolerance by half of what it does at its
 /// edge, and by three quarters where it is two elements wide. A flange that lies off by more than this share of it in
 /// the mean was shifted as a whole, …
@@ -281,7 +284,9 @@ impl LocalSearch<'_> {
     fn difference(&self, group: &Group<'_, '_>) -> Option<Difference> {
         let worst = group.worst()?;
         let outlines = || PointTree::build(outlines(self.evidence));
-        let is_end = group.is_end(self.outlines.get_or_init(outlines)) && !self.is_shifted(group);
+        let is_end = group.is_end(self.outlines.get_or_init(outlines))
+            && !self.is_shifted(group)
+            && !self.is_all_round(group);
         let limit = if is_end {
             self.tolerance.springback
         } else {
@@ -326,6 +331,23 @@ impl LocalSearch<'_> {
             ..
         } = self.evidence;
         is_source_smaller(source, target, pose.scale)
+    }
+
+    /// Whether a group lies beside nearly all of the outline of the smaller part.
+    fn is_all_round(&self, group: &Group<'_, '_>) -> bool {
+        let PoseEvidence {
+            source,
+            target,
+            pose,
+            ..
+        } = self.evidence;
+        let outline: Vec<Point3> = if self.is_source_smaller() {
+            outline(source).map(|at| pose.apply(&at)).collect()
+        } else {
+            outline(target).collect()
+        };
+        let beside = outline.iter().filter(|at| group.has_beside(at, |_| true));
+        beside.count() as f64 > ALL_ROUND * outline.len() as f64
     }
 
     /// Mean edges of both meshes, in the target's unit.

@@ -65,3 +65,20 @@ fn a_flange_that_is_shifted_as_a_whole_is_a_difference() {
     let (by, is_end) = reason(&flanged(110, |_| 0.0, step), &plain).unwrap();
     assert!((3.5..=4.5).contains(&by) && !is_end, "{by} {is_end}");
 }
+
+#[test]
+fn a_rim_that_lies_off_all_round_is_no_flange_that_springback_opens() {
+    // A pan of 300 by 240 mm with a rim of 16 mm, drawn to a depth.
+    let pan = |rows: usize, depth: f64| {
+        grid([rows, rows], move |i, j| {
+            let x = 300.0 * i as f64 / rows as f64;
+            let y = 240.0 * j as f64 / rows as f64;
+            let from_border = x.min(300.0 - x).min(y).min(240.0 - y);
+            let share = ((from_border - 16.0) / 20.0).clamp(0.0, 1.0);
+            Point3::new(x, y, -depth * share)
+        })
+    };
+    let (by, is_end) = reason(&pan(110, 32.2), &pan(120, 30.0)).unwrap();
+    assert!(by < 2.5 && !is_end, "{by}");
+    assert_eq!(reason(&pan(110, 30.0), &pan(120, 30.0)), None);
+}

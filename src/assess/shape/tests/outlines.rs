@@ -95,3 +95,47 @@ fn sides_and_ends_that_were_trimmed_elsewhere_are_no_pieces() {
         assert_eq!(counts(&shape), [0, 0], "{shape:?}");
     }
 }
+
+/// A half shell of 600 mm, nearly round, about an axis that bends sideways, whose border on one side lies `longer` rows
+/// of 2.5 mm farther around, with five holes.
+fn half_shell(longer: u32) -> Surface {
+    let (n, m) = (75, 60 + longer);
+    let smooth = |t: f64| {
+        let t = t.clamp(0.0, 1.0);
+        t * t * (3.0 - 2.0 * t)
+    };
+    let point = |i: u32, j: u32| {
+        let (u, angle) = (8.0 * f64::from(i), PI * f64::from(j) / 60.0);
+        let radius = 46.0 + 6.0 * smooth((u - 200.0) / 150.0);
+        let aside = 80.0 * smooth((u - 100.0) / 400.0);
+        Point3::new(
+            u,
+            radius * angle.cos() + aside,
+            (radius - 6.0) * angle.sin() + 30.0 * (u / 180.0).sin(),
+        )
+    };
+    let is_hole = |i: u32, j: u32| {
+        let holes = [(8, 28), (22, 24), (37, 34), (52, 30), (66, 20)];
+        let is_in = |(u, v): (u32, u32)| (u..u + 2).contains(&i) && (v..v + 6).contains(&j);
+        holes.into_iter().any(is_in)
+    };
+    let points = (0..=m).flat_map(|j| (0..=n).map(move |i| point(i, j)));
+    let cells = (0..m).flat_map(|j| (0..n).map(move |i| (i, j)));
+    let triangles = cells.filter(|&(i, j)| !is_hole(i, j)).flat_map(|(i, j)| {
+        let a = j * (n + 1) + i;
+        let up = a + n + 1;
+        [[a, a + 1, up + 1], [a, up + 1, up]]
+    });
+    let mesh = TriMesh::new(points.collect(), triangles.collect()).unwrap();
+    Surface::new(&mesh, "source").unwrap()
+}
+
+#[test]
+fn a_border_that_was_trimmed_elsewhere_turns_no_shell_off_its_holes() {
+    let shape = statement(&half_shell(0), &half_shell(2));
+    let borders = &shape.borders;
+    assert!(borders.worst_hole < 0.3, "{shape:?}");
+    let apart = borders.other_trim.unwrap();
+    assert!((apart - 5.0).abs() < 1.0, "{shape:?}");
+    assert_eq!(shape.reasons, []);
+}
