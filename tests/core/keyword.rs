@@ -1014,3 +1014,17 @@ fn plastic_strains_of_shells_that_are_elsewhere_are_not_counted() {
     // A file of states alone has them for shells of another.
     assert_eq!(range(states), Some([0.25, 7.0]));
 }
+
+#[test]
+fn numbers_with_one_tab_between_them_are_read_one_by_one() {
+    let by_commas = "*KEYWORD\n*NODE\n12345678,0.,0.,0.\n2,10.5,-.25,1.E-3\n3,-682.94918123456789,10.,1234567.8\n\
+         *ELEMENT_SHELL_THICKNESS\n12345679,7,12345678,2,3,3\n1.5,1.25,1.,1.\n*END\n";
+    let tabs = by_commas.replace(',', "\t");
+    let [by_commas, by_tabs] = [by_commas.to_owned(), tabs]
+        .map(|deck| read_files(&Memory::new().with("main.k", deck.into_bytes())));
+    assert_eq!(by_tabs.nodes, by_commas.nodes);
+    assert_eq!(by_tabs.shells, by_commas.shells);
+    assert_eq!(by_tabs.shell_extras, by_commas.shell_extras);
+    assert_eq!(by_tabs.diagnostics.count(DiagnosticKind::Tabs), 1);
+    assert_eq!(by_tabs.diagnostics.n_geometry_errors(), 0);
+}

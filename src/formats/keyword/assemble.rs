@@ -416,7 +416,8 @@ impl Assembly {
     fn tell_tabs(&mut self, had_tabs: bool, origin: &Origin) {
         if had_tabs && !self.told_tabs {
             self.told_tabs = true;
-            let message = "tabs are taken as steps to the next multiple of eight columns";
+            let message = "one tab between numbers separates them; other tabs are taken as steps to the next multiple of \
+                           eight columns";
             let diagnostic = Diagnostic::new(DiagnosticKind::Tabs, message);
             let place = origin.file.position(origin.range.start);
             self.found.push(diagnostic.at(place));

@@ -4,6 +4,7 @@
 //! for a node. The same description serves I10, long and free format.
 
 mod misread;
+mod tabs;
 
 use std::borrow::Cow;
 
@@ -137,7 +138,8 @@ pub struct Card<'a> {
 }
 
 impl<'a> Card<'a> {
-    /// Takes a line without its line end. Tabs are expanded to columns of eight.
+    /// Takes a line without its line end. Tabs that separate numbers are taken as commas, others are expanded to
+    /// columns of eight.
     pub fn new(
         line: &'a [u8],
         offset: usize,
@@ -147,7 +149,7 @@ impl<'a> Card<'a> {
     ) -> Self {
         let had_tabs = line.contains(&b'\t');
         let text = if had_tabs {
-            Cow::Owned(expand_tabs(line))
+            Cow::Owned(tabs::between_numbers(line).unwrap_or_else(|| tabs::expanded(line)))
         } else {
             Cow::Borrowed(line)
         };
@@ -162,7 +164,7 @@ impl<'a> Card<'a> {
         }
     }
 
-    /// The whole line, tabs expanded.
+    /// The whole line, without tabs.
     pub fn line(&self) -> &[u8] {
         &self.text
     }
@@ -182,12 +184,12 @@ impl<'a> Card<'a> {
         self.text.iter().all(u8::is_ascii_whitespace)
     }
 
-    /// True if the values stand between commas.
+    /// True if the values stand between commas, or between tabs that are taken as such.
     pub fn is_free(&self) -> bool {
         self.free
     }
 
-    /// True if tabs were expanded.
+    /// True if there were tabs.
     pub fn had_tabs(&self) -> bool {
         self.had_tabs
     }
@@ -484,17 +486,4 @@ fn is_non_finite_word(text: &[u8]) -> bool {
     let word = word.unwrap_or(text).to_ascii_lowercase();
     let is_name = [&b"nan"[..], b"inf", b"infinity"].contains(&&word[..]);
     is_name || (!word.is_empty() && word.iter().all(|&b| b == b'*'))
-}
-
-fn expand_tabs(line: &[u8]) -> Vec<u8> {
-    let mut expanded = Vec::with_capacity(line.len() + 16);
-    for &byte in line {
-        if byte == b'\t' {
-            let to_stop = 8 - expanded.len() % 8;
-            expanded.extend(std::iter::repeat_n(b' ', to_stop));
-        } else {
-            expanded.push(byte);
-        }
-    }
-    expanded
 }

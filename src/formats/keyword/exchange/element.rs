@@ -39,7 +39,7 @@ impl Element<'_> {
         ];
         let n_cards = 1 + usize::from(self.is_quadratic);
         let cards = both[..n_cards].iter().map(|(values, old)| match old {
-            Some((card, line, _)) => replaced_thickness(card, line, values, layout),
+            Some((card, ..)) => replaced_thickness(card, values, layout),
             None => {
                 let mut text = Vec::new();
                 push_thickness(&mut text, values, layout);
@@ -173,12 +173,12 @@ impl Element<'_> {
 }
 
 /// The new corner thicknesses with what stands behind them on the card, such as a material angle.
-fn replaced_thickness(card: &Card<'_>, line: &[u8], new: &[f64; 4], layout: Layout) -> Vec<u8> {
+fn replaced_thickness(card: &Card<'_>, new: &[f64; 4], layout: Layout) -> Vec<u8> {
     let mut text = Vec::new();
     push_thickness(&mut text, new, layout);
     let width = layout.width(FIVE_BY_16[0]);
     if card.is_free() {
-        let mut fields = line.splitn(5, |&byte| byte == b',');
+        let mut fields = card.line().splitn(5, |&byte| byte == b',');
         if let Some(rest) = fields.nth(4) {
             let plain = new.iter().map(|t| format!("{t:.8E}")).collect::<Vec<_>>();
             text = plain.join(",").into_bytes();
@@ -186,7 +186,6 @@ fn replaced_thickness(card: &Card<'_>, line: &[u8], new: &[f64; 4], layout: Layo
             text.extend_from_slice(rest);
         }
     } else if let Some(rest) = card.line().get(4 * width..) {
-        // Tabs are columns there.
         text.extend_from_slice(rest);
     }
     text
