@@ -10,17 +10,17 @@ use super::args::ReadArgs;
 use super::map_choices::{
     HandName, KindName, MirrorName, RuleName, default_thickness, law, quantities,
 };
-use super::map_files::{check_order, warn_of_unread};
+use super::map_files::{check_order, kept_files, warn_of_unread};
 use super::map_text::summary;
 use super::map_unused::{Beside, warn_of_unused};
 use super::numbers::{layers, percent, points_in_plane};
-use super::of_each::{LengthFactors, StressFactors, of_file, one_or_each};
+use super::of_each::{LengthFactors, StressFactors, of_file, of_kept, one_or_each};
 use super::placing::{Placed, place};
 use super::recipe::selection;
 use super::setting_args::MapSettingArgs;
 use super::{
-    NamedFiles, UsageError, check_outputs, is_stdout, json_target, print, progress, warn_of_tools,
-    write_json, write_output,
+    UsageError, check_outputs, is_stdout, json_target, print, progress, warn_of_tools, write_json,
+    write_output,
 };
 use crate::assess::Verdict;
 use crate::mapping::{MapOptions, Quantities, RuleKind};
@@ -72,11 +72,11 @@ pub(super) struct MapChoice {
     /// one for each. Without it, the sheet: parts that are rigid, or have no forming results where others
     /// have them, are tools and left out.
     #[arg(long, value_name = "PART")]
-    stamped_part: Vec<String>,
+    pub(super) stamped_part: Vec<String>,
     #[command(flatten)]
     pub(super) lengths: LengthFactors,
     #[command(flatten)]
-    stresses: StressFactors,
+    pub(super) stresses: StressFactors,
     /// Material law of the stamped parts (24 or PIECEWISE_LINEAR_PLASTICITY), for files that hold none.
     /// History variables go to parts of the same law alone.
     #[arg(long, value_name = "LAW", value_parser = law)]
@@ -257,20 +257,18 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     inputs.extend(others.chain(&args.choice.project).cloned());
     inputs.extend(args.choice.pose.iter().map(PathBuf::from));
     check_outputs(targets(&args.output), &inputs)?;
-    let (crash, stamped) = load_all(args, &monitor)?;
+    let kept = kept_files(&args.choice, &args.stamped);
+    let (crash, stamped) = load_all(args, &kept, &monitor)?;
     let whole = crash.clone();
     inputs.extend(crash.files());
     inputs.extend(stamped.iter().flat_map(LoadedPart::files));
     check_outputs(targets(&args.output), &inputs)?;
     check_order(&crash, &stamped)?;
-    let mut named = NamedFiles::default();
-    for path in args.stamped.iter().filter(|path| !named.is_new(path)) {
-        log::warn!("{} is named twice and mapped twice", path.display());
-    }
     check_shells(&crash, stamped.iter())?;
     // Where the work ends in an error, what the reader found may be the reason.
     let tell = |_: &anyhow::Error| warn_of_unread(std::iter::once(&whole).chain(&stamped));
-    let placed = place(&args.choice, crash, &stamped, &monitor).inspect_err(tell)?;
+    let poses = of_kept(&args.choice.pose, &kept);
+    let placed = place(&args.choice, &poses, (crash, &stamped), &monitor).inspect_err(tell)?;
     let Placed { crash, mut poses } = placed;
     if let Some(mirror) = args.choice.mirror.motion() {
         for (pose, _) in &mut poses {
@@ -287,7 +285,7 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         })
         .collect();
     let recipe = MapRecipe {
-        stress_factors: args.choice.stresses.checked(args.stamped.len())?.to_vec(),
+        stress_factors: of_kept(args.choice.stresses.checked(args.stamped.len())?, &kept),
         stamped_law: args.choice.stamped_material.clone(),
         least_area: args.output.require.map(|percent| percent / 100.0),
         ..args.values.recipe()
@@ -550,7 +548,12 @@ fn all_targets(output: &MapOutputArgs, files: &MapFiles) -> Vec<Target> {
     targets
 }
 
-fn load_all(args: &MapArgs, monitor: &Monitor) -> anyhow::Result<(LoadedPart, Vec<LoadedPart>)> {
+/// The crash part and the `kept` stamped files.
+fn load_all(
+    args: &MapArgs,
+    kept: &[usize],
+    monitor: &Monitor,
+) -> anyhow::Result<(LoadedPart, Vec<LoadedPart>)> {
     let choice = &args.choice;
     let settings = |role, part: Option<&str>, length_factor: f64| LoadSettings {
         selection: selection(role, part),
@@ -567,10 +570,10 @@ fn load_all(args: &MapArgs, monitor: &Monitor) -> anyhow::Result<(LoadedPart, Ve
         let part = of_file(&choice.stamped_part, file);
         part.map(String::as_str)
     };
-    let stamped = args.stamped.iter().enumerate().map(|(file, path)| {
+    let stamped = kept.iter().map(|&file| {
         let factor = choice.lengths.of(file);
         load(
-            path,
+            &args.stamped[file],
             &settings(Role::Stamped, part_of(file), factor),
             monitor,
         )

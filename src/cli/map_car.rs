@@ -11,10 +11,9 @@ use super::args::ReadArgs;
 use super::map::MapValues;
 use super::map_choices::{HandName, default_thickness};
 use super::map_unused::{Beside, warn_of_unused};
-use super::of_each::{LengthFactors, StressFactors, of_file};
+use super::of_each::{LengthFactors, StressFactors, named_once, of_file};
 use super::{
-    NamedFiles, UsageError, check_outputs, is_stdout, json_target, print, progress, takes_stdout,
-    write_json,
+    UsageError, check_outputs, is_stdout, json_target, print, progress, takes_stdout, write_json,
 };
 use crate::pipeline::load::{LoadSettings, load, usual_selection};
 use crate::pipeline::map::DefaultThickness;
@@ -114,17 +113,16 @@ fn map_all(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         read: read.clone(),
         ..LoadSettings::default()
     };
-    let stamped: Vec<StampedFile> = args
-        .stamped
-        .iter()
-        .enumerate()
-        .map(|(file, path)| StampedFile {
-            path: path.clone(),
+    let paths = args.stamped.iter();
+    let kept = named_once(paths.map(|path| (path.as_path(), String::new())));
+    let stamped: Vec<StampedFile> = kept
+        .into_iter()
+        .map(|file| StampedFile {
+            path: args.stamped[file].clone(),
             settings: settings(Role::Stamped, args.lengths.of(file)),
             stress_factor: of_file(stress_factors, file).copied(),
         })
         .collect();
-    let stamped = named_once(stamped);
     let mut inputs = vec![args.car.clone()];
     inputs.extend(args.stamped.iter().cloned());
     if let Some(pattern) = inputs.iter().find(|path| is_pattern(path)) {
@@ -171,19 +169,6 @@ fn map_all(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     } else {
         ExitCode::FAILURE
     })
-}
-
-/// The files without those that stand for one named before, which would be mapped onto itself.
-fn named_once(files: Vec<StampedFile>) -> Vec<StampedFile> {
-    let mut named = NamedFiles::default();
-    let mut is_first = |file: &StampedFile| {
-        let is_first = named.is_new(&file.path);
-        if !is_first {
-            log::warn!("{} is named twice and mapped once", file.path.display());
-        }
-        is_first
-    };
-    files.into_iter().filter(|file| is_first(file)).collect()
 }
 
 /// Whether a path is a pattern that the shell found no file for.

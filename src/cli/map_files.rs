@@ -1,6 +1,10 @@
 //! What is told of the files of a mapping besides their contents.
 
+use std::path::PathBuf;
+
 use super::UsageError;
+use super::map::MapChoice;
+use super::of_each::{named_once, of_file};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::map::unread_line;
 
@@ -19,6 +23,23 @@ pub(super) fn check_order(crash: &LoadedPart, stamped: &[LoadedPart]) -> anyhow:
         names.join(", ")
     );
     Err(UsageError(text).into())
+}
+
+/// The places of the stamped files that are mapped: a file that is named again with the same choices is mapped once.
+/// Of a project each file has a pose.
+pub(super) fn kept_files(choice: &MapChoice, stamped: &[PathBuf]) -> Vec<usize> {
+    let choices = |file: usize| {
+        if choice.project.is_some() {
+            return file.to_string();
+        }
+        let part = of_file(&choice.stamped_part, file);
+        let length_factor = choice.lengths.of(file);
+        let stress_factor = of_file(choice.stresses.given(), file);
+        let pose = choice.pose.get(file);
+        format!("{part:?} {length_factor} {stress_factor:?} {pose:?}")
+    };
+    let files = stamped.iter().enumerate();
+    named_once(files.map(|(file, path)| (path.as_path(), choices(file))))
 }
 
 /// Tells what of the files could not be read.

@@ -32,7 +32,6 @@ mod words;
 
 pub use args::{Cli, Task};
 
-use std::collections::BTreeSet;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -82,18 +81,6 @@ pub fn run(task: &Task, quiet: bool) -> anyhow::Result<ExitCode> {
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 struct UsageError(String);
-
-/// The files of a command line, to find those that are named twice.
-#[derive(Debug, Default)]
-struct NamedFiles(BTreeSet<PathBuf>);
-
-impl NamedFiles {
-    /// Whether no path before stands for the same file.
-    fn is_new(&mut self, path: &Path) -> bool {
-        let place = path.canonicalize();
-        self.0.insert(place.unwrap_or_else(|_| path.to_path_buf()))
-    }
-}
 
 /// The exit status for an error.
 pub fn exit_status(error: &anyhow::Error) -> ExitCode {

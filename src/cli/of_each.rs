@@ -1,6 +1,7 @@
 //! Options that are given once for all stamped files or once for each.
 
-use std::path::Path;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -64,6 +65,11 @@ impl StressFactors {
         !self.stress_factor.is_empty()
     }
 
+    /// The factors as they were given.
+    pub(super) fn given(&self) -> &[f64] {
+        &self.stress_factor
+    }
+
     /// The factors; more or fewer of them than files are refused.
     pub(super) fn checked(&self, n_files: usize) -> anyhow::Result<&[f64]> {
         one_or_each(self.stress_factor.len(), "stress factor", n_files)?;
@@ -81,6 +87,41 @@ pub(super) fn one_or_each(n_values: usize, what: &str, n_files: usize) -> anyhow
         counted(n_files, "stamped file")
     );
     Err(UsageError(text).into())
+}
+
+/// The places of the files without those that stand for one named before with the same choices, which would be mapped
+/// onto itself. Tells every file that is named again.
+pub(super) fn named_once<'a>(files: impl Iterator<Item = (&'a Path, String)>) -> Vec<usize> {
+    let mut named: BTreeSet<PathBuf> = BTreeSet::new();
+    let mut chosen: BTreeSet<(PathBuf, String)> = BTreeSet::new();
+    let mut kept = Vec::new();
+    for (at, (path, choices)) in files.enumerate() {
+        let place = path.canonicalize();
+        let place = place.unwrap_or_else(|_| path.to_path_buf());
+        let is_known = !named.insert(place.clone());
+        let is_kept = chosen.insert((place, choices));
+        if is_kept {
+            kept.push(at);
+        }
+        if is_known {
+            let how_often = if is_kept {
+                "twice, with other options"
+            } else {
+                "once"
+            };
+            log::warn!("{} is named twice and mapped {how_often}", path.display());
+        }
+    }
+    kept
+}
+
+/// Of values that are given for each file those of the `kept` ones; one for all stays.
+pub(super) fn of_kept<T: Clone>(values: &[T], kept: &[usize]) -> Vec<T> {
+    if values.len() < 2 {
+        return values.to_vec();
+    }
+    let of_kept = kept.iter().filter_map(|&file| values.get(file));
+    of_kept.cloned().collect()
 }
 
 /// What was given for a file: one value for all, or one for each.

@@ -64,11 +64,11 @@ fn check_files(
     Ok(())
 }
 
-/// The pose of each stamped part as it is given, or by a match on the crash parts that it belongs to.
+/// The pose of each stamped part as it is given (`typed`), or by a match on the crash parts that it belongs to.
 pub(super) fn place(
     choice: &MapChoice,
-    crash: LoadedPart,
-    stamped: &[LoadedPart],
+    typed: &[String],
+    (crash, stamped): (LoadedPart, &[LoadedPart]),
     monitor: &Monitor,
 ) -> anyhow::Result<Placed> {
     let given = |crash, poses: Vec<Similarity>| {
@@ -108,12 +108,9 @@ pub(super) fn place(
             .into()),
         };
     }
-    if !choice.pose.is_empty() {
-        let poses: anyhow::Result<Vec<Similarity>> = choice
-            .pose
-            .iter()
-            .map(|text| pose("--pose", text))
-            .collect();
+    if !typed.is_empty() {
+        let poses: anyhow::Result<Vec<Similarity>> =
+            typed.iter().map(|text| pose("--pose", text)).collect();
         return given(crash, poses?);
     }
     let recipe = placing_recipe(choice.hand());
