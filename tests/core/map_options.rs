@@ -493,3 +493,70 @@ fn scales_of_poses_and_nodes_off_the_mid_surface_are_told() {
     let told = told(&strip, rigid);
     assert!(told.contains("nodes lie off the mid-surface"), "{told}");
 }
+
+/// What is asked for and not there stands among the checks; what many files lack is judged only where it was named.
+#[test]
+fn quantities_that_no_stamped_file_holds_are_among_the_checks() {
+    let strip = Strip::new();
+    let bare = Pair::new(
+        &std::fs::read_to_string(strip.path("crash.k")).unwrap(),
+        &format!("*KEYWORD\n{}*END\n", squares(2, 1, 1, Some(0.9))),
+    );
+    let check = |pair: &Pair, quantities: &str| {
+        let options = ["--quantities", quantities, "--json", "m.json"];
+        let output = pair.map(&options);
+        assert!(output.status.success(), "{}", errors(&output));
+        let record = std::fs::read_to_string(pair.path("m.json")).unwrap();
+        let record: serde_json::Value = serde_json::from_str(&record).unwrap();
+        let checks = record["checks"].as_array().unwrap();
+        let found = checks.iter().find(|check| check["name"] == "Quantities");
+        let told = String::from_utf8(output.stdout).unwrap();
+        found.map(|check| {
+            let found = check["found"].as_str().unwrap();
+            assert!(told.contains(found), "{told}");
+            (found.to_owned(), check["is_met"].as_bool())
+        })
+    };
+    let no = |names: &str, is_met| Some((format!("no {names} in the stamped files"), is_met));
+    assert_eq!(check(&strip.0, "usual"), None);
+    let further = "strains, no history variables";
+    assert_eq!(check(&strip.0, "full"), no(further, None));
+    assert_eq!(
+        check(&strip.0, "thickness,strain"),
+        no("strains", Some(false))
+    );
+    assert_eq!(check(&bare, "thickness"), None);
+    assert_eq!(check(&bare, "usual"), no("plastic strains", Some(false)));
+    let all = format!("stresses, no plastic strains, no {further}");
+    assert_eq!(check(&bare, "full"), no(&all, Some(false)));
+}
+
+/// A file that is named twice is mapped twice only where it lies at two poses.
+#[test]
+fn a_stamped_file_that_is_named_twice_is_mapped_once_at_each_pose() {
+    let strip = Strip::new();
+    let at = |x: u32| format!("1 0 0 {x} 0 1 0 0 0 0 1 0 0 0 0 1");
+    let run = |poses: [u32; 2]| {
+        let [first, second] = poses.map(at);
+        let output = strip.0.run(&[
+            "stamped.dynain",
+            "--pose",
+            &first,
+            "--pose",
+            &second,
+            "--json",
+            "m.json",
+        ]);
+        assert!(output.status.success(), "{}", errors(&output));
+        let record = std::fs::read_to_string(strip.path("m.json")).unwrap();
+        let record: serde_json::Value = serde_json::from_str(&record).unwrap();
+        let n_files = record["stamped"].as_array().unwrap().len();
+        (n_files, errors(&output).to_owned())
+    };
+    let (n_files, told) = run([0, 0]);
+    assert_eq!(n_files, 1);
+    assert!(told.contains("is named twice and mapped once"), "{told}");
+    let (n_files, told) = run([0, 20]);
+    assert_eq!(n_files, 2);
+    assert!(told.contains("mapped twice, with other options"), "{told}");
+}

@@ -6,8 +6,9 @@ use super::balance::force_balance;
 use super::origin::PoseOrigin;
 use super::peak::peak_at_best;
 use super::record::{MapRecord, PairRecord, StampedRecord};
+use super::warnings::absent;
 use super::{MapRun, ShownValue};
-use crate::mapping::Status;
+use crate::mapping::{Quantities, Status};
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::forming_values::FormingValue;
 use crate::text::{
@@ -57,6 +58,8 @@ pub enum CheckReason {
     /// Of a pose that was given nothing is known, so that the command line has one judged check fewer than the
     /// window, which knows the match.
     GivenPose,
+    /// Everything was asked for, whatever the stamped files hold, and they lack what many lack.
+    NotInFiles,
 }
 
 impl CheckReason {
@@ -70,6 +73,10 @@ impl CheckReason {
             Self::GivenPose => {
                 "Only the match that found a pose says whether it is right, and this one was given. Where the \
                  match is known, as in the window, the pose is one more check."
+            }
+            Self::NotInFiles => {
+                "Everything that the stamped files hold was asked for, and many files hold no such \
+                 results."
             }
         }
     }
@@ -120,6 +127,7 @@ pub(super) fn checks_of(
     monitor: &Monitor,
 ) -> Result<Vec<CheckRecord>, Cancelled> {
     let mut checks = vec![area(run, record)];
+    checks.extend(quantities(run));
     checks.extend(doubled(run));
     checks.extend(read_errors(run));
     monitor.check()?;
@@ -220,6 +228,22 @@ fn area(run: &MapRun, record: &MapRecord) -> CheckRecord {
             .position(|report| !report.status.has_values()),
         ..CheckRecord::default()
     }
+}
+
+/// Quantities that were asked for and that no stamped file holds, if there are any. Where everything was asked for,
+/// strains and history variables are told and not judged.
+fn quantities(run: &MapRun) -> Option<CheckRecord> {
+    let [usual, further] = absent(run);
+    let is_told = usual.is_empty() && run.recipe.options.quantities == Quantities::FULL;
+    let names = [usual, further].concat();
+    (!names.is_empty()).then(|| CheckRecord {
+        name: "Quantities".to_owned(),
+        found: format!("no {} in the stamped files", names.join(", no ")),
+        limit: "all of them".to_owned(),
+        is_met: (!is_told).then_some(false),
+        reason: is_told.then_some(CheckReason::NotInFiles),
+        ..CheckRecord::default()
+    })
 }
 
 /// Elements that lie near two sheets or on two parts, if there are any.

@@ -118,10 +118,12 @@ pub(super) fn warnings(
 /// an element takes its values from one file.
 fn in_two_files(run: &MapRun, stamped: &[PlacedPart<'_>]) -> Vec<String> {
     let results = |source: &SourcePart| {
-        let has_thickness =
-            (0..source.thickness.len()).any(|element| source.mean_thickness(element).is_finite());
         let has_states = source.states.n_present() > 0;
-        [has_thickness, has_states, source.strains.n_present() > 0]
+        [
+            has_thickness(source),
+            has_states,
+            source.strains.n_present() > 0,
+        ]
     };
     let files: Vec<_> = (stamped.iter().zip(&run.sources))
         .map(|(placed, source)| (placed.part, source, results(source)))
@@ -145,6 +147,11 @@ fn in_two_files(run: &MapRun, stamped: &[PlacedPart<'_>]) -> Vec<String> {
         }
     }
     told
+}
+
+/// Whether an element of a stamped part has a thickness.
+fn has_thickness(source: &SourcePart) -> bool {
+    (0..source.thickness.len()).any(|element| source.mean_thickness(element).is_finite())
 }
 
 /// Says how many elements of a stamped file have no results because places of layers differ in too many ways.
@@ -385,29 +392,38 @@ fn told_of(
 
 /// Names quantities that were asked for one by one and that no stamped file holds.
 fn not_there(run: &MapRun) -> Option<String> {
-    let wanted = run.recipe.options.quantities;
-    if wanted == Quantities::FULL {
-        return None;
-    }
-    let sources = &run.sources;
-    let absent = [
-        (
-            "strains",
-            wanted.strain && sources.iter().all(|part| part.strains.n_present() == 0),
-        ),
-        (
-            "history variables",
-            wanted.history && sources.iter().all(|part| part.history.is_empty()),
-        ),
-    ];
-    let names = absent.iter().filter(|(_, is_absent)| *is_absent);
-    let names: Vec<&str> = names.map(|(name, _)| *name).collect();
-    (!names.is_empty()).then(|| {
+    let [_, named] = absent(run);
+    (!named.is_empty() && run.recipe.options.quantities != Quantities::FULL).then(|| {
         format!(
             "{} were asked for, and no stamped file holds any",
-            names.join(" and ")
+            named.join(" and ")
         )
     })
+}
+
+/// The quantities that were asked for and that no stamped file holds: first those that every forming result has, then
+/// those that many lack.
+pub(super) fn absent(run: &MapRun) -> [Vec<&'static str>; 2] {
+    let wanted = run.recipe.options.quantities;
+    let sources = &run.sources;
+    let no_thickness = wanted.thickness && !sources.iter().any(has_thickness);
+    let no_states = sources.iter().all(|part| part.states.n_present() == 0);
+    let no_strains = sources.iter().all(|part| part.strains.n_present() == 0);
+    let no_history = sources.iter().all(|part| part.history.is_empty());
+    let usual = [
+        ("thicknesses", no_thickness),
+        ("stresses", wanted.stress && no_states),
+        ("plastic strains", wanted.plastic_strain && no_states),
+    ];
+    let further = [
+        ("strains", wanted.strain && no_strains),
+        ("history variables", wanted.history && no_history),
+    ];
+    let names = |all: &[(&'static str, bool)]| {
+        let absent = all.iter().filter(|(_, is_absent)| *is_absent);
+        absent.map(|(name, _)| *name).collect()
+    };
+    [names(&usual), names(&further)]
 }
 
 /// Says how many elements with other values have no thickness, and how many have no stress card, with the first
