@@ -142,7 +142,12 @@ fn start_poses(args: &SettingArgs, recipe: &mut MatchRecipe) -> anyhow::Result<S
 /// A pose from the word of an option itself or from the file it names.
 pub(super) fn pose(option: &str, word: &str) -> anyhow::Result<Similarity> {
     let typed = match parse_matrix(word) {
-        Ok(parsed) => return Ok(parsed.motion),
+        Ok(parsed) => {
+            for note in &parsed.notes {
+                log::warn!("{option}: {note}");
+            }
+            return Ok(parsed.motion);
+        }
         Err(error) => error,
     };
     let usage = |error: ParseMatrixError| UsageError(format!("{option} {word:?}: {error}"));
@@ -156,7 +161,7 @@ pub(super) fn pose(option: &str, word: &str) -> anyhow::Result<Similarity> {
     };
     let parsed = parse_matrix(&text).map_err(usage)?;
     for note in &parsed.notes {
-        log::warn!("{word}: {note}");
+        log::warn!("{option} {word}: {note}");
     }
     Ok(parsed.motion)
 }

@@ -8,6 +8,12 @@ use crate::text::trimmed;
 /// Largest entry of |AᵀA/c² − I| that a pasted matrix may have; six written digits stay below it.
 const ORTHOGONALITY_TOLERANCE: f64 = 1e-4;
 
+/// What is told of a matrix with a negative determinant.
+const MIRRORS: &str = "the matrix mirrors, as its determinant is negative: it is the pose of a part of the opposite hand";
+/// What is told of a matrix that ends in 0 0 0 1 by columns.
+const TRANSPOSED: &str = "the translation stands in the last row, so the matrix was taken as transposed, column by \
+                          column; write it in the last column to have it read by rows";
+
 /// A way to write the pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum MatrixForm {
@@ -269,7 +275,7 @@ pub fn parse_matrix(text: &str) -> Result<ParsedMatrix, ParseMatrixError> {
     }
     let mut found = found?;
     if found.motion.is_mirrored() {
-        found.notes.push("the matrix mirrors");
+        found.notes.push(MIRRORS);
     }
     Ok(found)
 }
@@ -335,6 +341,7 @@ fn four_by_four(
         notes.push("without a translation rows and columns look alike; rows were assumed");
     }
     if last_column && !last_row {
+        notes.push(TRANSPOSED);
         return Ok((similarity(&rows.transpose())?, MatrixLayout::Columns4x4));
     }
     Ok((similarity(&rows)?, MatrixLayout::Rows4x4))
@@ -535,6 +542,16 @@ mod tests {
             let parsed = parse_matrix(text).unwrap();
             assert_eq!(parsed.remark().as_deref(), remark, "{text}");
         }
+    }
+
+    #[test]
+    fn a_mirror_and_a_transposed_matrix_are_told() {
+        let notes = |text: &str| parse_matrix(text).unwrap().notes;
+        assert_eq!(notes("-1 0 0 5 0 1 0 6 0 0 1 7 0 0 0 1"), [MIRRORS]);
+        assert_eq!(notes("-1 0 0 5 0 -1 0 6 0 0 1 7 0 0 0 1"), [""; 0]);
+        assert_eq!(notes("1 0 0 0 0 1 0 0 0 0 1 0 5 6 7 1"), [TRANSPOSED]);
+        let both = notes("-1 0 0 0 0 1 0 0 0 0 1 0 5 6 7 1");
+        assert_eq!(both, [TRANSPOSED, MIRRORS]);
     }
 
     #[test]
