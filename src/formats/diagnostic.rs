@@ -110,6 +110,8 @@ kinds! {
     BadParameter, Error, "unusable parameter";
     /// An element names a node that no file defines.
     MissingNode, Error, "missing node";
+    /// A node that lies absurdly far from all others.
+    StrayNode, Error, "node far from all others";
     /// A parameter is defined twice.
     DuplicateParameter, Warning, "duplicate parameter";
     /// A node id is defined twice at different places.

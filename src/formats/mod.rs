@@ -227,6 +227,7 @@ pub fn read_from(
         Format::Ply => ply::read(&bytes, path, monitor)?,
     };
     model.format = format;
+    model.find_stray_nodes(path, monitor)?;
     if n_after > 0 {
         let message = format!(
             "{n_after} bytes behind the gzip data are passed over; the file may be damaged"

@@ -5,6 +5,7 @@ mod forming;
 mod formulation;
 mod index;
 mod sheet;
+mod stray;
 mod surface;
 mod titles;
 
@@ -377,6 +378,8 @@ pub struct Model {
     pub shell_control: ShellControl,
     /// Sets of parts, shells and nodes.
     pub sets: Sets,
+    /// Nodes of elements that lie absurdly far from all others, ascending.
+    pub stray_nodes: Vec<u32>,
     /// Forming results. Tensors are in the global frame: those of a file that was included under a
     /// transformation, or of shells that `*NODE_TRANSFORM` moved, are turned with its rotation.
     /// The sides of a shell are those of its corner order, which an include that is mirrored reverses with its

@@ -124,7 +124,7 @@ pub struct PartSummary {
 impl Model {
     /// The triangle mesh of the chosen elements. Quads are cut along the shorter diagonal (equal
     /// ones from the first corner), concave ones along the inner one; of solids the faces used once are
-    /// taken, facing outward. O(elements).
+    /// taken, facing outward. Elements with a node absurdly far from all others are left out. O(elements).
     pub fn surface(&self, selection: &Selection) -> Result<ChosenMesh, SelectionError> {
         self.build_surface(selection, &Monitor::silent())
     }
@@ -140,7 +140,7 @@ impl Model {
         for_chunks(self.shells.len(), monitor, |range| {
             for index in range {
                 let shell = &self.shells[index];
-                if chosen.shell(index, shell.part) {
+                if chosen.shell(index, shell.part) && !self.is_stray(&shell.nodes) {
                     let name = || format!("shell {}", shell.id);
                     builder.polygon(shell.corners(), index as u32, shell.part, name);
                 }
@@ -280,7 +280,10 @@ impl Model {
         builder: &mut Builder,
         monitor: &Monitor,
     ) -> Result<(), Cancelled> {
-        let is_chosen = |index: &usize| chosen.solid(self.solids[*index].part);
+        let is_chosen = |index: &usize| {
+            let solid = &self.solids[*index];
+            chosen.solid(solid.part) && !self.is_stray(&solid.nodes)
+        };
         let mut uses: HashMap<[u32; 4], u32> = HashMap::new();
         for_chunks(self.solids.len(), monitor, |range| {
             for index in range.filter(is_chosen) {
