@@ -13,8 +13,8 @@ use crate::search::ClosestPoint;
 /// A piece reaches beyond the other part by more than so many times what borders may lie apart: less is a matter of
 /// their trims, …
 const REACHES: f64 = 2.0;
-/// … and by more than this share of the mean edge length of the coarser mesh: less is what an element cuts off the corner
-/// of a lug or a notch.
+/// … and by more than this share of the mean edge length of the coarser mesh: less is what an element cuts off the
+/// corner of a lug or a notch.
 const CORNER: f64 = 0.6;
 /// A longer piece, as a share of the outline, is a side or an end that was trimmed elsewhere.
 const LONGEST: f64 = 0.2;

@@ -136,6 +136,8 @@ kinds! {
     DegenerateElement, Warning, "degenerate element";
     /// Shells whose nodes do not lie in their mid-surface, for which they are taken all the same.
     OffMidSurface, Warning, "nodes off the mid-surface";
+    /// Parts that lie on each other, as a sheet and its tools do, and are taken as one.
+    StackedParts, Warning, "parts that lie on each other";
     /// An element names a part that no file defines.
     UndefinedPart, Note, "undefined part";
     /// An included file cannot be found or read.

@@ -10,10 +10,11 @@ use serde::{Deserialize, Serialize};
 
 use super::id_map::{IdMap, Origins};
 use super::names::file_name;
+use super::tools::{stacked_parts, tools_line};
 use super::{PipelineError, millis_since};
 use crate::formats::{
-    self, CheckedSource, Diagnostic, Diagnostics, Disk, FileHash, FileSource, FormatError, Memory,
-    Model, ReadOptions, Selection, SelectionError, Severity,
+    self, CheckedSource, Diagnostic, DiagnosticKind, Diagnostics, Disk, FileHash, FileSource,
+    FormatError, Memory, Model, ReadOptions, Selection, SelectionError, Severity,
 };
 use crate::geometry::chunks::for_chunks;
 use crate::geometry::{CleanMesh, MeshError, Point3, TriMesh};
@@ -22,15 +23,13 @@ use crate::registration::Surface;
 use crate::report::command_line::CommandSide;
 use crate::role::{PerRole, Role};
 use crate::samples::{self, SampleFile};
-use crate::text::{counted, length, parts_by_id};
+use crate::text::length;
 use crate::units::{self, KnownUnits, UnitOrigin, Units};
 
 /// What lengths may be multiplied by: wider than any two units of length lie apart.
 const UNIT_FACTORS: RangeInclusive<f64> = 1e-9..=1e9;
 /// Places shown of a part before its picture is there.
 const N_SHAPE: usize = 3000;
-/// Tools that are named by their ids.
-const N_NAMED_TOOLS: usize = 6;
 /// Parts that are named where one was asked for that does not exist.
 const N_NEAR_PARTS: usize = 5;
 
@@ -77,18 +76,6 @@ pub fn usual_selection(role: Role) -> Selection {
         Role::Crash => Selection::All,
         Role::Stamped => Selection::Sheet,
     }
-}
-
-/// Says which parts of a file are left out as tools of the forming simulation; `None` if none are.
-pub fn tools_line(file_name: &str, tools: &[u64]) -> Option<String> {
-    let which = match tools.len() {
-        0 => return None,
-        1..=N_NAMED_TOOLS => parts_by_id(tools),
-        n => counted(n, "part"),
-    };
-    Some(format!(
-        "{file_name}: {which} left out as tools, which are rigid or have no forming results"
-    ))
 }
 
 /// Forming changes the mean thickness by less: of one sheet the stamped part is so many times as thick as the crash
@@ -263,12 +250,13 @@ impl LoadedPart {
         [&self.model.diagnostics, &*self.surface_diagnostics]
     }
 
-    /// What the reader could not understand or had to leave out, errors before warnings; notes are
-    /// not among them. Of each kind only the first are kept.
+    /// What the reader could not understand or had to leave out, errors before warnings, of these what concerns whole
+    /// parts first; notes are not among them. Of each kind only the first are kept.
     pub fn problems(&self) -> Vec<&Diagnostic> {
         let kept = self.diagnostics().into_iter().flat_map(Diagnostics::iter);
         let mut problems: Vec<_> = kept.filter(|one| one.severity() > Severity::Note).collect();
-        problems.sort_by_key(|one| std::cmp::Reverse(one.severity()));
+        let is_of_parts = |one: &Diagnostic| one.kind == DiagnosticKind::StackedParts;
+        problems.sort_by_key(|one| std::cmp::Reverse((one.severity(), is_of_parts(one))));
         problems
     }
 
@@ -457,13 +445,20 @@ pub fn prepare(
     let n_turned = clean.n_turned;
     let surface = Surface::prepare(clean, "chosen", monitor)?;
     let mesh = surface.mesh().clone();
+    let mut surface_diagnostics = chosen.diagnostics;
+    if settings.selection == Selection::Sheet {
+        let thickness = mean_thickness.map(|thickness| thickness * factor);
+        let told = stacked_parts((&model, &mesh), ids.parts(), thickness, monitor)?;
+        told.into_iter()
+            .for_each(|told| surface_diagnostics.push(told));
+    }
     let report = LoadReport {
         n_nodes: model.nodes.len(),
         n_shells: model.shells.len(),
         n_parts: model.parts.len(),
         n_triangles: mesh.n_triangles(),
         n_turned,
-        n_diagnostics: diagnostics(&model.diagnostics) + diagnostics(&chosen.diagnostics),
+        n_diagnostics: diagnostics(&model.diagnostics) + diagnostics(&surface_diagnostics),
         read_ms: 0.0,
         prepare_ms: millis_since(start),
     };
@@ -474,7 +469,7 @@ pub fn prepare(
         mesh,
         surface: Arc::new(surface),
         ids: Arc::new(ids),
-        surface_diagnostics: Arc::new(chosen.diagnostics),
+        surface_diagnostics: Arc::new(surface_diagnostics),
         guessed_units,
         report,
         mean_thickness,

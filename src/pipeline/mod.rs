@@ -25,6 +25,7 @@ mod read_again;
 pub mod reduce;
 pub mod sweep;
 mod sweep_record;
+mod tools;
 pub mod units;
 pub mod write_file;
 

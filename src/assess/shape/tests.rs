@@ -35,8 +35,13 @@ fn hat(n: usize, displace: impl Fn(Point3) -> Point3) -> Surface {
 }
 
 fn statement(source: &Surface, target: &Surface) -> ShapeStatement {
+    statement_of_sheet(source, target, 1.5)
+}
+
+/// Of a sheet of this thickness.
+fn statement_of_sheet(source: &Surface, target: &Surface, thickness: f64) -> ShapeStatement {
     let settings = AssessSettings {
-        thickness: Some(1.5),
+        thickness: Some(thickness),
         ..AssessSettings::default()
     };
     let (pair, pose) = ([source, target], Similarity::identity());

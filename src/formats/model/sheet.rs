@@ -6,14 +6,16 @@ use super::Model;
 
 /// Law of materials that do not deform (`*MAT_RIGID`).
 const RIGID_LAW: &str = "20";
+/// Fraction by which thicknesses of a sheet differ that was not formed.
+const EVEN: f64 = 1e-3;
 
 impl Model {
     /// For each part whether it may be the formed sheet. A forming deck also holds die, punch and
     /// binder, whose surfaces lie half a thickness from the sheet's.
     ///
     /// Parts that do not deform are tools where others deform; of the rest only those with stresses or
-    /// strains count where some have them. Of a file that tells nothing every part counts.
-    /// O(elements), of which nothing is asked in a file of one part.
+    /// strains count where some have them, and where none has any, those whose shells differ in thickness. Of a file
+    /// that tells nothing every part counts. O(elements), of which nothing is asked in a file of one part.
     pub fn sheet_parts(&self) -> Vec<bool> {
         let mut may_be = self.parts_with_elements();
         let is_rigid = |part: usize| {
@@ -25,7 +27,11 @@ impl Model {
             .collect();
         narrow(&mut may_be, &deforms);
         if may_be.iter().filter(|is_left| **is_left).count() > 1 {
-            narrow(&mut may_be, &self.parts_with_results());
+            let has_results = self.parts_with_results();
+            narrow(&mut may_be, &has_results);
+            if !has_results.contains(&true) {
+                narrow(&mut may_be, &self.parts_of_uneven_thickness());
+            }
         }
         may_be
     }
@@ -46,6 +52,21 @@ impl Model {
             has[part as usize] = true;
         }
         has
+    }
+
+    /// For each part whether the thicknesses that its shells have of their own differ, as forming leaves them.
+    /// O(elements).
+    fn parts_of_uneven_thickness(&self) -> Vec<bool> {
+        let mut ranges = vec![[f64::INFINITY, 0.0]; self.parts.len()];
+        for extra in &self.shell_extras {
+            let [least, most] = &mut ranges[self.shells[extra.shell as usize].part as usize];
+            for &thickness in extra.thickness.iter().filter(|thickness| **thickness > 0.0) {
+                *least = thickness.min(*least);
+                *most = thickness.max(*most);
+            }
+        }
+        let is_uneven = |[least, most]: [f64; 2]| most > least * (1.0 + EVEN);
+        ranges.into_iter().map(is_uneven).collect()
     }
 
     /// For each part whether a shell of it has stresses or strains. O(elements).
@@ -118,6 +139,18 @@ mod tests {
     #[test]
     fn parts_without_results_are_no_sheet_where_another_has_them() {
         assert_eq!(chosen(RESULTS), [2]);
+    }
+
+    #[test]
+    fn parts_of_one_thickness_are_no_sheet_where_that_of_another_differs() {
+        let shells = |second: &str| {
+            let card = |id: u32, t: &str| format!("{id},{id},11,12,13,13\n{t}\n");
+            let [die, punch] = [card(41, "1.,1.,1."), card(43, "1.,1.,1.")];
+            let both = card(42, "1.,1.,1.") + &card(44, second).replace("44,44", "44,42");
+            format!("*ELEMENT_SHELL_THICKNESS\n{die}{punch}{both}")
+        };
+        assert_eq!(chosen(&shells("1.,.97,1.")), [42, 42]);
+        assert_eq!(chosen(&shells("1.,1.,1.")), [1, 2, 3, 41, 43, 42, 42]);
     }
 
     #[test]

@@ -305,6 +305,7 @@ pub(in crate::pipeline) fn file_lines(part: &LoadedPart, options: &MapOptions) -
         moved_nodes(part),
         doubtful_line(part),
         repeated_elements(part),
+        part.stacked_line(),
         local.flatten(),
     ];
     lines.into_iter().flatten().collect()

@@ -5,8 +5,8 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::assess::Verdict;
-use crate::pipeline::load::tools_line;
 use crate::pipeline::names::file_name;
+use crate::pipeline::tools::tools_line;
 use crate::registration::UnitGuess;
 use crate::text::{counted, fixed, length, parts_by_id, percent};
 
