@@ -126,8 +126,9 @@ pub struct InputArgs {
     /// Without it, the part of a whole model that fits is found.
     #[arg(long, value_name = "PART")]
     pub crash_part: Option<String>,
-    /// Part of the stamped file, as for --crash-part, or sheet. Without it, the sheet: parts that are rigid, or have
-    /// no forming results where others have them, are tools and left out.
+    /// Part of the stamped file, as for --crash-part, or sheet. Without it, the sheet: parts that are rigid, that
+    /// have no forming results where others have them, or whose thickness is even where that of others varies, are
+    /// tools and left out.
     #[arg(long, value_name = "PART")]
     pub stamped_part: Option<String>,
     /// Units of the crash file, stated in the results; guessed if not given. They change no number.

@@ -69,8 +69,8 @@ pub(super) struct MapChoice {
     #[arg(long, value_name = "PART")]
     pub(super) crash_part: Option<String>,
     /// Part of the stamped files, written as for --crash-part, or all, or sheet. Give one for all files or
-    /// one for each. Without it, the sheet: parts that are rigid, or have no forming results or but one
-    /// thickness where others have more, are tools and left out.
+    /// one for each. Without it, the sheet: parts that are rigid, that have no forming results where others
+    /// have them, or whose thickness is even where that of others varies, are tools and left out.
     #[arg(long, value_name = "PART")]
     pub(super) stamped_part: Vec<String>,
     #[command(flatten)]

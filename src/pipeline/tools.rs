@@ -34,7 +34,7 @@ pub fn tools_line(file_name: &str, tools: &[u64]) -> Option<String> {
         n => counted(n, "part"),
     };
     Some(format!(
-        "{file_name}: {which} left out as tools, which are rigid or have no forming results"
+        "{file_name}: {which} left out as tools, which are rigid, without forming results or of even thickness"
     ))
 }
 
