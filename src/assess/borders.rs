@@ -151,6 +151,11 @@ impl<'a> BorderComparison<'a> {
         self.surfaces
     }
 
+    /// The borders of source and target, each in the frame of its part.
+    pub(super) fn curves(&self) -> [&[BorderCurve]; 2] {
+        self.borders.each_ref().map(Vec::as_slice)
+    }
+
     /// Compares the borders that lie near each other under a pose. O(border edges + near triangles).
     pub(crate) fn at(&self, pose: &Similarity) -> Borders {
         let still = Similarity::identity();
@@ -174,8 +179,7 @@ impl<'a> BorderComparison<'a> {
             pairs,
             ..self.still.clone()
         };
-        let borders = self.borders.each_ref().map(Vec::as_slice);
-        found.compare_holes(self.surfaces, borders, pose, self.near);
+        found.compare_holes(self.surfaces, self.curves(), pose, self.near);
         found
     }
 

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::border_curve::{BorderCurve, Place, along, curves_of};
+use super::border_curve::{BorderCurve, Place, along};
 use super::evidence::PoseEvidence;
 use crate::geometry::serial::xyz;
 use crate::geometry::{Point3, Similarity, Vector3};
@@ -58,9 +58,13 @@ struct Piece {
 }
 
 impl OutlinePieces {
-    /// The pieces under the pose of the evidence; `limit` is how far borders may lie apart. `None` where there are
-    /// none. O(places along the outlines · log triangles).
-    pub(super) fn of(evidence: &PoseEvidence<'_>, limit: f64) -> Option<Self> {
+    /// The pieces under the pose of the evidence, by the borders of source and target; `limit` is how far these may lie
+    /// apart. `None` where there are none. O(places along the outlines · log triangles).
+    pub(super) fn of(
+        evidence: &PoseEvidence<'_>,
+        [source_borders, target_borders]: [&[BorderCurve]; 2],
+        limit: f64,
+    ) -> Option<Self> {
         let (pose, back) = (evidence.pose, evidence.pose.inverse());
         let still = Similarity::identity();
         let (source, target) = (evidence.source, evidence.target);
@@ -69,8 +73,8 @@ impl OutlinePieces {
             reaches: (REACHES * limit).max(CORNER * evidence.borders.edge),
         };
         let (of_source, of_target) = rayon::join(
-            || pieces(source, (target, &pose, 1.0), limits),
-            || pieces(target, (source, &back, pose.scale), limits),
+            || pieces(source_borders, (target, &pose, 1.0), limits),
+            || pieces(target_borders, (source, &back, pose.scale), limits),
         );
         let places = [(&of_source, &pose), (&of_target, &still)];
         let places = places.into_iter().flat_map(|(pieces, target_from_own)| {
@@ -92,15 +96,14 @@ impl OutlinePieces {
     }
 }
 
-/// The pieces of a part, each with its place in the part's own frame. The other part comes with the motion to its
-/// frame and the length of its unit in target units, in which the pieces are measured.
+/// The pieces of a part with these borders, each with its place in the part's own frame. The other part comes with the
+/// motion to its frame and the length of its unit in target units, in which the pieces are measured.
 fn pieces(
-    own: &Surface,
+    borders: &[BorderCurve],
     (other, other_from_own, unit): (&Surface, &Similarity, f64),
     limits: Limits,
 ) -> Vec<Piece> {
-    let outlines = curves_of(own);
-    let outlines = outlines.iter().filter(|border| !border.is_hole);
+    let outlines = borders.iter().filter(|border| !border.is_hole);
     let outlines: Vec<&BorderCurve> = outlines.collect();
     let length: f64 = outlines.iter().map(|outline| outline.length).sum();
     let own_unit = unit * other_from_own.scale;

@@ -5,6 +5,7 @@ mod local;
 
 use serde::{Deserialize, Serialize};
 
+use super::border_curve::BorderCurve;
 use super::borders::{Borders, HolePair, LEAST_PAIRED, PairKind};
 use super::contact::{Contacts, STATED_SHARE};
 use super::evidence::PoseEvidence;
@@ -293,8 +294,13 @@ impl ShapeStatement {
     }
 
     /// Looks for pieces of sheet at the outlines that only one part has. Where just one part has them, it was trimmed
-    /// later; where both have, they are two versions. O(places along the outlines · log triangles).
-    pub(super) fn compare_outlines(&mut self, evidence: &PoseEvidence<'_>) {
+    /// later; where both have, they are two versions. `borders` are those of source and target.
+    /// O(places along the outlines · log triangles).
+    pub(super) fn compare_outlines(
+        &mut self,
+        evidence: &PoseEvidence<'_>,
+        borders: [&[BorderCurve]; 2],
+    ) {
         if self.met < MOSTLY_MET {
             return;
         }
@@ -303,7 +309,7 @@ impl ShapeStatement {
             .borders
             .limit(&self.tolerance)
             .hypot(self.springback);
-        self.borders.pieces = OutlinePieces::of(evidence, limit);
+        self.borders.pieces = OutlinePieces::of(evidence, borders, limit);
         if let Some(pieces) = self.borders.pieces.filter(OutlinePieces::are_of_both) {
             self.reasons.push(ShapeReason::Outlines { pieces });
             self.kind = self.kind.max(ShapeKind::OtherVersion);

@@ -176,7 +176,7 @@ impl<'a> Compared<'a> {
         let mut shape = ShapeStatement::of(&met.evidence, &met.fit, self.tolerance);
         shape.borders.other_trim = met.other_trim;
         if self.outlines == Outlines::Compared {
-            shape.compare_outlines(&met.evidence);
+            shape.compare_outlines(&met.evidence, self.borders.curves());
         }
         shape.is_offset_removed = settings.remove_offset && is_removed(&met.fit, &shape);
         shape
