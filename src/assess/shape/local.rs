@@ -8,7 +8,7 @@ use crate::assess::evidence::PoseEvidence;
 use crate::assess::fit::Fit;
 use crate::assess::shape::{BentEnd, ShapeReason};
 use crate::assess::tolerance::{ShapeTolerance, is_source_smaller};
-use crate::geometry::{Point3, Vector3};
+use crate::geometry::{Border, Point3, Vector3};
 use crate::registration::Surface;
 use crate::search::PointTree;
 
@@ -24,6 +24,9 @@ const LEAST_OF_END: f64 = 0.5;
 /// What lies beside more than this share of the outline is no end either, but the whole rim: the part is drawn deeper
 /// or less deep.
 const ALL_ROUND: f64 = 0.75;
+/// A closed border shorter than this share of the longest is that of a cut-out, such as the slit of a louvre: the sheet
+/// around it holds it, and no end lies there.
+const CUT_OUT: f64 = 0.3;
 /// What springback bends turns about a line: in the mean it lies beyond the tolerance by half of what it does at its
 /// edge, and by three quarters where it is two elements wide. A flange that lies off by more than this share of it in
 /// the mean was shifted as a whole, …
@@ -49,7 +52,8 @@ const BEYOND_PLACES: f64 = 1.5;
 /// than a thickness away.
 const MEASURED: f64 = 1.01;
 
-/// A node is looked at closely if a rough estimate of what nothing explains there comes so near the limit.
+/// A node is looked at closely if a rough estimate of what nothing explains there comes so near the limit, and confirms
+/// a narrow difference if that does.
 const ROUGHLY: f64 = 0.7;
 
 /// Elements cut narrow beads and the edges of wide ones short. A group that is not so many edges wide may be that:
@@ -207,34 +211,42 @@ impl LocalSearch<'_> {
         } else {
             of_source
         };
+        let nearly = ROUGHLY * self.tolerance.remainder;
         self.differences(&places, edge, |slim| {
             let is_asked = |at: &Point3| slim.iter().any(|(g, _)| g.has_beside(at, |_| true));
             let nodes = self.evidence.of_larger(is_asked).into_iter();
             let off = nodes.map(|node| (node.point, self.fit.left_at(&node, contacts)));
-            off.filter(|(_, left)| self.is_beyond(*left)).collect()
+            off.filter(|(_, left)| left.abs() > nearly).collect()
         })
     }
 
     /// What the nodes say that lie far apart.
     fn among_far(&self) -> Vec<Difference> {
         let contacts = &self.evidence.contacts;
+        let nearly = ROUGHLY * self.tolerance.remainder;
         let is_asked = |point: &Point3, normal: &Vector3, gap: f64| {
             let left = self.fit.left_of((point, normal), gap, contacts);
-            left.abs() > ROUGHLY * self.tolerance.remainder
+            left.abs() > nearly
         };
-        let least = ROUGHLY * self.tolerance.remainder - BEYOND_PLACES * self.fit.most_explained();
+        let least = nearly - BEYOND_PLACES * self.fit.most_explained();
         let met = self.evidence.of_near(least, is_asked, MOST_FAR);
-        let [of_source, of_target] = [0, 1].map(|side| {
-            let apart = |contact| {
-                let left = self.fit.left_at(contact, &self.evidence.contacts);
-                self.apart(contact, left, true)
-            };
-            met[side].iter().filter_map(apart).collect::<Vec<Apart>>()
+        let lefts = met.each_ref().map(|contacts| {
+            let left = |contact| self.fit.left_at(contact, &self.evidence.contacts);
+            contacts.iter().map(left).collect::<Vec<f64>>()
         });
+        let [of_source, of_target] = [0, 1].map(|side| {
+            let contacts = met[side].iter().zip(&lefts[side]);
+            let apart = contacts.filter_map(|(contact, &left)| self.apart(contact, left, true));
+            apart.collect::<Vec<Apart>>()
+        });
+        let seen = |side: usize| {
+            let contacts = met[side].iter().zip(&lefts[side]);
+            let off = contacts.filter(|(_, left)| left.abs() > nearly);
+            off.map(|(contact, left)| (contact.point, *left)).collect()
+        };
         let [edge_of_source, edge_of_target] = self.edges();
-        let seen = |places: &[Apart]| places.iter().map(|p| (p.contact.point, p.left)).collect();
-        let mut found = self.differences(&of_source, edge_of_target, |_| seen(&of_target));
-        found.extend(self.differences(&of_target, edge_of_source, |_| seen(&of_source)));
+        let mut found = self.differences(&of_source, edge_of_target, |_| seen(1));
+        found.extend(self.differences(&of_target, edge_of_source, |_| seen(0)));
         found
     }
 
@@ -492,7 +504,10 @@ fn outlines(evidence: &PoseEvidence<'_>) -> Vec<Point3> {
 }
 
 fn outline(surface: &Surface) -> impl Iterator<Item = Point3> {
-    let outlines = surface.borders().iter().filter(|border| !border.is_hole);
+    let borders = || surface.borders().iter().filter(|border| !border.is_hole);
+    let longest = borders().map(|border| border.length).fold(0.0, f64::max);
+    let is_outer = move |border: &&Border| !border.closed || border.length >= CUT_OUT * longest;
+    let outlines = borders().filter(is_outer);
     let vertices = outlines.flat_map(|border| &border.vertices);
     vertices.map(|&vertex| surface.mesh().positions()[vertex as usize])
 }

@@ -88,3 +88,33 @@ fn a_rim_that_lies_off_all_round_is_no_flange_that_springback_opens() {
     );
     assert_eq!(of(0.0).reasons, []);
 }
+
+#[test]
+fn the_lip_of_a_louvre_is_no_flange_that_springback_opens() {
+    // A sheet of 400 by 240 mm with four slits of 80 mm, each beside a lip that rises by so much over 30 mm.
+    let louvred = |cell: f64, rise: f64| {
+        let rows = [(400.0 / cell) as usize, (240.0 / cell) as usize];
+        let at = |k: usize| cell * k as f64;
+        let from_slit = |x: f64| (x - 60.0).rem_euclid(90.0);
+        let is_beside = |y: f64| (80.0..=160.0).contains(&y);
+        let whole = grid(rows, |i, j| {
+            let [x, y] = [at(i), at(j)];
+            let away = (1.0 - from_slit(x - 4.0) / 30.0).max(0.0) * f64::from(x >= 60.0);
+            let across = ((40.0 - (y - 120.0).abs()) / 16.0).clamp(0.0, 1.0);
+            Point3::new(x, y, 20.0 * (x / 90.0).sin() + rise * away * across)
+        });
+        let points = whole.mesh().positions();
+        let is_solid = |corners: &&[u32; 3]| {
+            let middle: Vector3 = corners.iter().map(|&v| points[v as usize].coords).sum();
+            let [x, y] = [middle.x / 3.0, middle.y / 3.0];
+            x < 60.0 || from_slit(x) > 4.0 || !is_beside(y)
+        };
+        let solid = whole.mesh().triangles().iter().filter(is_solid).copied();
+        let mesh = TriMesh::new(points.to_vec(), solid.collect()).unwrap();
+        Surface::new(&mesh, "source").unwrap()
+    };
+    let target = louvred(4.0, 6.0);
+    assert_eq!(reason(&louvred(2.0, 6.0), &target), None);
+    let (by, is_end) = reason(&louvred(2.0, 9.0), &target).unwrap();
+    assert!((2.0..=5.0).contains(&by) && !is_end, "{by} {is_end}");
+}
