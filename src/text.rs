@@ -4,7 +4,11 @@
 //! reads the same everywhere. Negative numbers have a minus sign, not a hyphen, and no text shows a
 //! negative zero. What programs read, as matrices, cards and tables, is written with plain formats instead.
 
+mod typed;
+
 use crate::units::LengthUnit;
+
+pub use typed::{is_too_large, typed_count, typed_length, typed_number};
 
 /// A count with commas between the thousands: 34808 → `34,808`.
 pub fn grouped(n: usize) -> String {

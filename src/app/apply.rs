@@ -86,7 +86,7 @@ impl AppState {
                 NoticeCommand::MarkRead => work.log.notices.mark_read(),
                 NoticeCommand::Explain(text) => {
                     work.log_at(NoticeLevel::Note, LogStep::Window, None, text, None);
-                    work.log.notices.last_is_read();
+                    work.log.notices.last_is_answer();
                 }
                 NoticeCommand::Tell(level, text) => {
                     work.log_at(level, LogStep::Window, None, text, None);

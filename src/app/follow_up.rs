@@ -142,18 +142,11 @@ impl AppState {
                 before,
                 level,
                 line,
-            } => {
-                self.withdraw_about(&OF_PARTS);
-                // That the results of a project are out of date.
-                self.withdraw_about(&[LogStep::Project]);
-                self.tell_result(level, line);
-                if let Some(result) = &self.document.result {
-                    self.reduce.keep_match_level(&self.document, &result.run);
-                }
-                self.show_verdict();
-                self.follow_far_move(before);
+            } => self.see_matched(before, level, line),
+            FollowUp::MovedByHand => {
+                self.withdraw_about(&[LogStep::Map]);
+                self.view.stay();
             }
-            FollowUp::MovedByHand => self.view.stay(),
             FollowUp::FurtherPlaced => {
                 self.with_scene(|view, scene| view.keep_whole(Role::Stamped, scene));
             }
@@ -229,8 +222,22 @@ impl AppState {
         self.with_scene(|view, scene| view.fit_both(scene));
     }
 
+    fn see_matched(&mut self, before: Option<Point3>, level: NoticeLevel, line: String) {
+        self.withdraw_about(&OF_PARTS);
+        // That the results of a project are out of date.
+        self.withdraw_about(&[LogStep::Project]);
+        self.log.notices.withdraw_answers();
+        self.tell_result(level, line);
+        if let Some(result) = &self.document.result {
+            self.reduce.keep_match_level(&self.document, &result.run);
+        }
+        self.show_verdict();
+        self.follow_far_move(before);
+    }
+
     fn see_mapped(&mut self) {
         self.withdraw_about(&[LogStep::Map]);
+        self.log.notices.withdraw_answers();
         self.view.sections.arrange();
         // Whoever looks at distances or at parts wants to see what came of the mapping.
         if !self.is_mapping_shown() {

@@ -36,7 +36,6 @@ mod reduce;
 mod settings;
 mod shared;
 mod state;
-mod typed;
 mod view;
 mod work;
 
@@ -81,7 +80,6 @@ pub use reduce::{LevelResult, ReduceCommand, ReduceState};
 pub use settings::{MouseScheme, Settings, StartupOptions, Theme};
 pub use shared::Shared;
 pub use state::AppState;
-pub use typed::{typed_count, typed_length, typed_number};
 pub use view::{
     BottomTab, ColorBy, ColumnRoom, Dialog, Display, FreeWindow, OpenQuestion, Section, Sections,
     ShownGeometry, Stale, ViewCommand, ViewRoom, ViewState,

@@ -289,8 +289,8 @@ fn different_units(size_ratio: f64, unit: UnitGuess) -> String {
     let larger = if size_ratio < 1.0 { "stamped" } else { "crash" };
     let times = rounded(unit.times(size_ratio));
     format!(
-        "the {larger} part is about {times} × larger: is the stamped part in {} and the crash part in \
-         {}? No factor was applied",
+        "the {larger} part is about {times} × larger, as if the stamped part were in {} and the crash part in {}: \
+         check units and factors",
         unit.source.plural(),
         unit.target.plural()
     )

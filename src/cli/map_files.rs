@@ -2,17 +2,22 @@
 
 use std::path::PathBuf;
 
-use super::UsageError;
 use super::map::MapChoice;
 use super::of_each::{named_once, of_file};
+use super::{UsageError, warn_of_order};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::map::unread_line;
 
-/// Refuses files whose forming results all lie on the side of the crash part: they were named in the other order.
+/// Refuses files whose forming results all lie on the side of the crash part: they were named in the other order. Warns
+/// where only a thickness for each element does, which a crash deck may have of its own.
 pub(super) fn check_order(crash: &LoadedPart, stamped: &[LoadedPart]) -> anyhow::Result<()> {
-    // A crash deck may have thicknesses of its own.
-    let has_states = !crash.model.forming.is_empty();
-    if !has_states || stamped.iter().any(|part| part.model.has_results()) {
+    if stamped.iter().any(|part| part.model.has_results()) {
+        return Ok(());
+    }
+    if crash.model.forming.is_empty() {
+        if let Some(first) = stamped.first() {
+            warn_of_order(crash, first);
+        }
         return Ok(());
     }
     let names: Vec<String> = stamped.iter().map(LoadedPart::file_name).collect();

@@ -11,7 +11,7 @@ use super::placing::warn_of_unit;
 use super::recipe::{Asked, asked};
 use super::{
     EXIT_POOR, EXIT_USAGE, UsageError, check_outputs, is_stdout, match_text, print, print_exactly,
-    progress, project, warn_of_tools,
+    progress, project, warn_of_order, warn_of_tools,
 };
 use crate::assess::Verdict;
 use crate::monitor::Monitor;
@@ -273,13 +273,6 @@ fn load_both(
     let parts = PerRole::new(crash?, stamped?);
     warn_of_tools(&parts.stamped);
     let PerRole { crash, stamped } = parts.as_ref();
-    if !crash.model.forming.is_empty() && !stamped.model.has_results() {
-        log::warn!(
-            "the forming results are in {}, named first as the crash part, and there are none in {}; were the files \
-             named in the other order?",
-            crash.file_name(),
-            stamped.file_name()
-        );
-    }
+    warn_of_order(crash, stamped);
     Ok(parts)
 }

@@ -41,6 +41,7 @@ use serde::Serialize;
 
 pub use self::terminal::printable;
 pub use self::unknown::{refuse_unknown, refuse_window_options};
+use crate::formats::model::other_order;
 use crate::pipeline::PipelineError;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::outputs::{Content, Target, check_targets, json_text};
@@ -55,6 +56,19 @@ pub const EXIT_USAGE: u8 = 2;
 fn warn_of_tools(stamped: &LoadedPart) {
     if let Some(line) = stamped.tools_line() {
         log::warn!("{line}; --stamped-part all takes them too");
+    }
+}
+
+/// Says that two files were probably named in the other order.
+fn warn_of_order(crash: &LoadedPart, stamped: &LoadedPart) {
+    if let Some(evidence) = other_order(&crash.model, &stamped.model) {
+        log::warn!(
+            "{} carries {} and is named first, as the crash part, while {} carries none; were the files named in the \
+             other order?",
+            crash.file_name(),
+            evidence.words(),
+            stamped.file_name()
+        );
     }
 }
 

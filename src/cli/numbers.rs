@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use crate::mapping::limits;
-use crate::text::trimmed;
+use crate::text::{trimmed, typed_count};
 
 /// Ranges that end here or higher only keep out numbers without a meaning.
 pub(super) const WIDE: f64 = 1e9;
@@ -58,12 +58,12 @@ pub(super) fn points_in_plane(word: &str) -> Result<u8, String> {
     }
 }
 
-/// Takes whole numbers in a range.
+/// Takes whole numbers in a range, as people type them: `2000`, `2,000`, `2k`.
 pub(super) fn count(
     range: RangeInclusive<usize>,
 ) -> impl Fn(&str) -> Result<usize, String> + Clone + Send + Sync + 'static {
     move |word| {
-        let number = word.trim().parse().ok();
+        let number = typed_count(word);
         number.filter(|n| range.contains(n)).ok_or_else(|| {
             let (low, high) = (range.start(), range.end());
             match *high {

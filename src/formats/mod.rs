@@ -73,9 +73,15 @@ impl FormatError {
         if error.get_ref().is_some_and(|inner| inner.is::<Cancelled>()) {
             return Self::Cancelled(Cancelled);
         }
+        let is_standard_input =
+            path == Path::new("-") && error.kind() == std::io::ErrorKind::NotFound;
         Self::Open {
             path: path.to_path_buf(),
-            reason: error.to_string(),
+            reason: if is_standard_input {
+                "standard input is not read; name a file".to_owned()
+            } else {
+                error.to_string()
+            },
         }
     }
 }

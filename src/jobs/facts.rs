@@ -2,7 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::formats::{Model, PartSummary};
+use crate::formats::PartSummary;
+use crate::formats::model::FormingEvidence;
 use crate::geometry::{Aabb, Border, Landmarks, Vector3};
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::joined_parts::joined_parts;
@@ -38,29 +39,6 @@ pub struct PartFacts {
     pub thickness: Option<f64>,
     /// How much the file looks like the end of a forming simulation.
     pub formed: FormingEvidence,
-}
-
-/// What in a file speaks for the end of a forming simulation, the least first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum FormingEvidence {
-    /// Nothing.
-    None,
-    /// It is one part with a thickness for each element.
-    ThicknessPerElement,
-    /// It has stresses or strains.
-    Results,
-}
-
-impl FormingEvidence {
-    fn of(model: &Model) -> Self {
-        if !model.forming.is_empty() {
-            Self::Results
-        } else if model.parts.len() == 1 && !model.shell_extras.is_empty() {
-            Self::ThicknessPerElement
-        } else {
-            Self::None
-        }
-    }
 }
 
 impl PartFacts {

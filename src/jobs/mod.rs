@@ -16,7 +16,7 @@ mod worker;
 
 pub use event::{JobEvent, JobStage};
 pub use export::{Destination, ExportRequest, Exported};
-pub use facts::{FormingEvidence, PartFacts};
+pub use facts::PartFacts;
 pub use job::{
     CompareInput, CompareMappingInput, FoundCrash, FurtherInput, JobId, JobKey, JobKind, JobOutput,
     MapInput, MatchInput, MeasureInput, MeasureLevelInput, MeasuredLevel, Measurement, PlaceInput,

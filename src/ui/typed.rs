@@ -6,8 +6,9 @@ use std::ops::RangeInclusive;
 use egui::{DragValue, Response, RichText, Stroke, Ui, emath::Numeric, vec2};
 
 use super::theme::Palette;
-use crate::app::{typed_count, typed_length, typed_number};
-use crate::text::{Lengths, grouped, trimmed};
+use crate::text::{
+    Lengths, grouped, is_too_large, trimmed, typed_count, typed_length, typed_number,
+};
 
 /// What a field is called and which values it takes.
 #[derive(Debug, Clone)]
@@ -70,10 +71,17 @@ impl<'a> Takes<'a> {
         };
         match value {
             Some(value) if self.range.contains(&value) => Ok(value),
-            Some(_) => Err(format!("{}: {}.", self.name, self.range_words())),
+            Some(_) => Err(self.range_sentence()),
             None if text.trim().is_empty() => Err(format!("Enter a {what}.")),
+            None if is_too_large(text) => Err(format!("“{}” is too large.", text.trim())),
+            // Of whole numbers below zero the range says more.
+            None if typed_number(text, "").is_some_and(|n| n < 0.0) => Err(self.range_sentence()),
             None => Err(format!("“{}” is not a {what}.", text.trim())),
         }
+    }
+
+    fn range_sentence(&self) -> String {
+        format!("{}: {}.", self.name, self.range_words())
     }
 
     fn suffix(&self) -> &'static str {
@@ -117,8 +125,6 @@ struct Refused {
     at: f64,
     /// How often fields had taken a value by then.
     n_taken: u64,
-    /// The pointer was pressed since, and what the reason lay over is seen again.
-    is_read: bool,
 }
 
 /// Where the number of the frame is kept in which a field was left by Escape.
@@ -133,10 +139,9 @@ fn is_abandoned(ui: &Ui, field: egui::Id) -> bool {
     left_at.is_some_and(|at| ui.ctx().cumulative_pass_nr() <= at + 2)
 }
 
-/// Adds a field of a value that is read when it is left: a text that `read` refuses changes nothing and frames the
-/// field until it is edited again, it or another field takes a value, the value changes, or Escape is pressed. Why it
-/// was refused is said below the field, over what stands there, until the pointer is pressed, and after that where the
-/// field is pointed at.
+/// Adds a field of a value that is read when it is left: a text that `read` refuses changes nothing. Why it was refused
+/// is said below the framed field, over what stands there, until the pointer or Escape is pressed, the field is edited
+/// again, it or another field takes a value, or the value changes: the value that is shown then is a right one.
 pub fn told_field(
     ui: &mut Ui,
     name: &str,
@@ -167,6 +172,7 @@ pub fn told_field(
     let n_taken = n_taken(ui, response.changed());
     let is_over = response.has_focus()
         || response.changed()
+        || is_pressed
         || ui.input(|input| input.key_pressed(egui::Key::Escape))
         || known
             .as_ref()
@@ -176,13 +182,9 @@ pub fn told_field(
             why,
             at: value,
             n_taken,
-            is_read: false,
         }),
         None if is_over => None,
-        None => known.clone().map(|known| Refused {
-            is_read: known.is_read || is_pressed,
-            ..known
-        }),
+        None => known.clone(),
     };
     if now != known {
         ui.data_mut(|data| data.insert_temp(id, now.clone()));
@@ -193,9 +195,6 @@ pub fn told_field(
     let frame = Stroke::new(1.5, Palette::of(ui).poor);
     let inside = egui::StrokeKind::Inside;
     ui.painter().rect_stroke(response.rect, 4.0, frame, inside);
-    if now.is_read {
-        return response.on_hover_text(now.why);
-    }
     tell(ui, &response, now.why);
     response
 }
@@ -277,6 +276,9 @@ mod tests {
             (&floor, "1 kg", Err("“1 kg” is not a length.")),
             (&points, "0", Err("Coarse points: 1 to 1,000,000,000.")),
             (&points, "1.5", Err("“1.5” is not a whole number.")),
+            (&points, "-5", Err("Coarse points: 1 to 1,000,000,000.")),
+            (&angle, "1e999", Err("“1e999” is too large.")),
+            (&points, "1e30", Err("“1e30” is too large.")),
             (&shift, "2", Err("Move: −0.5 to 0.5.")),
         ] {
             assert_eq!(takes.read(text), read.map_err(str::to_owned), "{text}");

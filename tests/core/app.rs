@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use shapematch::app::*;
 use shapematch::assess::PoseKind;
+use shapematch::formats::model::FormingEvidence;
 use shapematch::formats::{Diagnostic, DiagnosticKind, Model};
 use shapematch::geometry::camera::{Covered, StandardView};
 use shapematch::geometry::{Point3, Similarity, TriMesh, Vector3};
@@ -997,6 +998,13 @@ fn a_match_is_one_step_and_its_alternatives_are_one_key_away() {
         };
         assert_eq!(number as f64, x, "section 4 names the pose");
     }
+    // How far the pose of the result may be off says nothing of the pose in the window beside it.
+    window.act(Action::ToggleUncertainty);
+    window.apply(ViewCommand::ToggleMoveOver);
+    window.apply(ViewCommand::SetFreeWindow(FreeWindow::Alternative));
+    assert_eq!(window.state.free_window(), Some(FreeWindow::Alternative));
+    assert_eq!(window.state.color_by(Role::Crash), ColorBy::Uncertainty);
+    assert_eq!(window.state.color_by(Role::Stamped), ColorBy::Role);
     window.apply(MoveCommand::Flip(Axis::X));
     assert!(window.state.stale(Section::Match).is_some());
     for _ in 0..5 {
@@ -1012,6 +1020,15 @@ fn why_something_is_not_possible_is_a_toast_and_no_news() {
     window.apply(NoticeCommand::Explain("Run a match first.".into()));
     assert_eq!(toasts(&window.state), ["Run a match first."]);
     assert_eq!(window.state.log.notices.n_unread(), 0);
+    // It may be possible once there is a match.
+    let mut window = Window::with_both();
+    window.apply(NoticeCommand::Explain("There is no match yet.".into()));
+    window.act(Action::MatchOrStop);
+    let told = toasts(&window.state);
+    assert!(
+        !told.iter().any(|text| text.contains("no match yet")),
+        "{told:?}"
+    );
 }
 
 #[test]

@@ -545,6 +545,20 @@ fn a_mapping_is_compared_with_another_result_element_by_element() {
     window.act(Action::MapOrCancel);
     let result = window.state.document.current_mapping().unwrap();
     assert!(result.record.comparison.is_some());
+    // What follows from a mapping is undone with it.
+    window.act(Action::ShowMapped);
+    let mut recipe = window.state.document.mapping.recipe.clone();
+    *Quantity::Stress.switch(&mut recipe.options.quantities) = false;
+    window.apply(MapCommand::SetRecipe(recipe.into()));
+    window.act(Action::MapOrCancel);
+    assert_eq!(
+        window.state.history.undo_name(),
+        Some("Map forming results")
+    );
+    assert_ne!(window.state.color_by(Role::Crash), ColorBy::MapOther);
+    window.apply(HistoryCommand::Undo);
+    let result = window.state.document.mapping.result.as_ref().unwrap();
+    assert!(result.record.comparison.is_some() && result.other.is_some());
 }
 
 #[test]

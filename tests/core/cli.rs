@@ -653,6 +653,11 @@ fn options_without_effect_and_folders_that_are_not_there_are_told() {
     std::fs::write(&project, "{}").unwrap();
     for (words, status, told) in [
         (
+            &["info", "-"][..],
+            1,
+            "standard input is not read; name a file",
+        ),
+        (
             &["info", &crash, "--include-folder", "no-such-folder"][..],
             0,
             "--include-folder no-such-folder: no such folder",

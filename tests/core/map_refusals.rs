@@ -190,7 +190,26 @@ fn files_in_the_other_order_are_told() {
     assert!(told.contains(order), "{told}");
     assert!(told.contains("none in stamped.dynain"), "{told}");
     let matched = pair.shapematch(&["match", "crash.k", "stamped.dynain"]);
+    let order = "crash.k carries forming results and is named first, as the crash part, while \
+                 stamped.dynain carries none";
     assert!(errors(&matched).contains(order), "{}", errors(&matched));
+}
+
+#[test]
+fn files_in_the_other_order_are_told_where_only_a_thickness_says_so() {
+    // A crash deck may have that too, so nothing is refused.
+    let pair = Pair::new(&stamped(2, ""), &crash(2, ""));
+    let words =
+        "crash.k carries a thickness for each element and is named first, as the crash part, while";
+    for told in [
+        pair.map(&[]),
+        pair.shapematch(&["match", "crash.k", "stamped.dynain"]),
+    ] {
+        let told = errors(&told);
+        assert!(told.contains(words), "{told}");
+    }
+    let pair = Pair::new(&crash(2, ""), &stamped(2, ""));
+    assert!(!errors(&pair.map(&[])).contains("named first"));
 }
 
 #[test]

@@ -90,6 +90,8 @@ pub struct Notice {
     /// The job that failed, if it reports one.
     of_job: Option<JobKey>,
     about: Option<LogStep>,
+    /// Says why what was just asked for is not possible.
+    is_answer: bool,
     is_toast: bool,
 }
 
@@ -158,6 +160,7 @@ impl Notices {
             offers: offers.to_vec(),
             of_job: None,
             about: showing.about,
+            is_answer: false,
             is_toast: !showing.is_muted,
         });
         if self.items.len() > MAX_KEPT {
@@ -215,9 +218,17 @@ impl Notices {
     }
 
     /// The newest message answers what was just asked for: no one has to be told of it later.
-    pub(in crate::app) fn last_is_read(&mut self) {
+    pub(in crate::app) fn last_is_answer(&mut self) {
         if let Some(last) = self.items.last_mut() {
             last.is_unread = false;
+            last.is_answer = true;
+        }
+    }
+
+    /// What was not possible before may be possible now.
+    pub(in crate::app) fn withdraw_answers(&mut self) {
+        for notice in self.items.iter_mut().filter(|n| n.is_answer) {
+            notice.is_toast = false;
         }
     }
 

@@ -124,6 +124,13 @@ pub(in crate::app) fn take_compared(
     );
     work.log_step(LogStep::Map, None, text, Some(took));
     let file = other.files.first().cloned();
+    // What follows from a new mapping is undone with it.
+    let mapping = &work.document.mapping;
+    let is_first = mapping
+        .result
+        .as_ref()
+        .is_some_and(|result| result.other.is_none());
+    let follows_mapping = is_first && file.is_some() && file == mapping.compare_with;
     let put = |document: &mut Document| {
         document.mapping.compare_with = file;
         if let Some(result) = &mut document.mapping.result {
@@ -133,7 +140,7 @@ pub(in crate::app) fn take_compared(
             result.other = Some(other.into());
         }
     };
-    if state.restoring == Some(work.document.stamp()) {
+    if follows_mapping || state.restoring == Some(work.document.stamp()) {
         put(work.document);
     } else {
         work.commit("Compare with another mapping", put);

@@ -6,8 +6,8 @@ use crate::app::{
     Action, AppState, BottomTab, Command, MatchCommand, MatchResult, PartCommand, ViewCommand,
 };
 use crate::assess::{
-    Assessment, Clarity, Reason, ShapeKind, ShapeReason, Twin, Verdict, as_well, fit_beside,
-    fit_of_hand,
+    Assessment, Clarity, PoseKind, Reason, ShapeKind, ShapeReason, Twin, Verdict, as_well,
+    fit_beside, fit_of_hand,
 };
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::registration::{Hand, Method, StartMethod};
@@ -332,13 +332,20 @@ impl AppState {
             _ => None,
         });
         let by = differ?;
+        let mut evidence = format!(
+            "At 95 % of the area the surfaces differ by up to {}, more than the tolerance.",
+            self.lengths().of(by)
+        );
+        let pose = assessment.pose.as_ref();
+        let is_found = pose.is_none_or(|pose| pose.kind <= PoseKind::Uncertain);
+        if !is_found {
+            evidence += " Another part or a wrong pose looks alike, and the pose is not clear.";
+        }
         Some(Cause {
             title: "Springback or another forming state".to_owned(),
-            evidence: format!(
-                "At 95 % of the area the surfaces differ by up to {}, more than the tolerance.",
-                self.lengths().of(by)
-            ),
-            remedy: Some(self.allow(by)),
+            evidence,
+            // A wider tolerance does not make a pose the right one.
+            remedy: is_found.then(|| self.allow(by)),
         })
     }
 

@@ -18,6 +18,16 @@ impl AppState {
     pub fn is_part_used(&self, part: PartRef) -> bool {
         self.parts.is_used(&self.document, &self.jobs, part)
     }
+
+    /// True if no other part of its deck is matched, so that this one has to be. O(parts).
+    pub fn is_only_part_used(&self, part: PartRef) -> bool {
+        let rows = self.document.part(part.role).into_iter();
+        let mut others = rows
+            .flat_map(|loaded| &loaded.facts.parts)
+            .filter(|row| row.id != part.id);
+        self.is_part_used(part)
+            && !others.any(|row| self.is_part_used(PartRef { id: row.id, ..part }))
+    }
 }
 
 impl PartsState {

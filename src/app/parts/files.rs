@@ -13,7 +13,8 @@ use crate::app::{
     Action, Effect, GestureId, LogStep, NoticeLevel, Part, Settings, StampedPose, facts,
 };
 use crate::formats::ReadOptions;
-use crate::jobs::{FormingEvidence, JobKey, JobKind, PartFacts, PartSource, ProjectRequest};
+use crate::formats::model::FormingEvidence;
+use crate::jobs::{JobKey, JobKind, PartFacts, PartSource, ProjectRequest};
 use crate::pipeline::load::{LoadSettings, LoadedPart, same_parts_line, usual_selection};
 use crate::pipeline::names::file_name;
 use crate::pipeline::project::is_project;

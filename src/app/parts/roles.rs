@@ -2,7 +2,7 @@
 
 use crate::app::work::Work;
 use crate::app::{Action, LogStep, NoticeLevel, Part};
-use crate::jobs::FormingEvidence;
+use crate::formats::model::other_order;
 use crate::role::{PerRole, Role};
 
 /// Each file was opened as one of the parts. Where they speak plainly against that, the user is asked.
@@ -11,16 +11,16 @@ pub(super) fn offer_swap(work: &mut Work<'_>) {
         return;
     };
     let PerRole { crash, stamped } = both;
-    let is_by_content = crash.facts.formed == FormingEvidence::Results
-        && stamped.facts.formed == FormingEvidence::None;
     let is_by_name = crash.facts.formed >= stamped.facts.formed
         && stamped_word(crash) > 0
         && stamped_word(stamped) < 0;
     let names = both.map(|part| part.loaded.file_name());
-    let text = if is_by_content {
+    let text = if let Some(evidence) = other_order(&crash.loaded.model, &stamped.loaded.model) {
         format!(
-            "Swapped files? {} was opened as crash part and carries forming results, {} carries none",
-            names.crash, names.stamped
+            "Swapped files? {} was opened as crash part and carries {}, {} carries none",
+            names.crash,
+            evidence.words(),
+            names.stamped
         )
     } else if is_by_name {
         format!(
@@ -30,10 +30,11 @@ pub(super) fn offer_swap(work: &mut Work<'_>) {
     } else {
         return;
     };
-    work.log_step(LogStep::Load, None, text.clone(), None);
-    let showing = work.showing(NoticeLevel::Warning);
+    let level = NoticeLevel::Warning;
+    work.log_at(level, LogStep::Load, None, text.clone(), None);
+    let showing = work.showing(level);
     let notices = &mut work.log.notices;
-    notices.offer(NoticeLevel::Warning, text, showing, &[Action::Swap]);
+    notices.offer(level, text, showing, &[Action::Swap]);
 }
 
 /// How plainly a file's name says that it is the stamped part: 1, that it is the crash part: -1, else 0.

@@ -116,6 +116,8 @@ impl AppState {
         let chosen = self.shown_colors();
         match self.free_window().filter(|_| window == Role::Stamped) {
             Some(FreeWindow::Deviation) => ColorBy::Deviation,
+            // Distances and uncertainty are those of the pose of the result.
+            Some(FreeWindow::Alternative) if chosen.is_match_map() => ColorBy::Role,
             // Which file is which is told by the files themselves.
             _ if chosen == ColorBy::MapFile => chosen,
             // Beside a picture of the mapping the stamped part shows the quantity itself.

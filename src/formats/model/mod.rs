@@ -1,6 +1,7 @@
 //! What a file holds, whatever its format: nodes, shells, solids, parts, sets, forming results.
 
 mod chosen;
+mod evidence;
 mod forming;
 mod formulation;
 mod index;
@@ -12,6 +13,7 @@ mod titles;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+pub use evidence::{FormingEvidence, other_order};
 pub use forming::{Forming, OtherResults, ShellStrain, ShellStress, StrainPoint, StressPoint};
 pub use formulation::{ShellControl, ShellFormulation};
 pub use index::IdIndex;

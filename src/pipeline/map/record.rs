@@ -12,6 +12,7 @@ use super::values::middle_of;
 use super::verdict::{CheckRecord, checks_of};
 use super::warnings::{bare, warnings};
 use super::{MapFiles, MapRun, PlacedPart, PoseOrigin, ProbeRecord, ShownValue, covered_values};
+use crate::geometry::Similarity;
 use crate::geometry::chunks::for_chunks;
 use crate::mapping::{
     BackDifference, Distribution, SourcePart, Status, ValueHistogram, distribution,
@@ -21,8 +22,10 @@ use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::forming_values::{FormingValue, LayerChoice, nominal_thickness};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::names::told_apart;
+use crate::pipeline::outputs::record::file_record;
 use crate::pipeline::units::PairUnits;
-use crate::report::{DIRECTION, build_id};
+use crate::report::command_line::{CommandSide, MapCommandLine};
+use crate::report::{DIRECTION, FileRecord, build_id};
 use crate::role::PerRole;
 use crate::text::Lengths;
 
@@ -41,6 +44,10 @@ pub struct MapRecord {
     pub crash_parts: Vec<u64>,
     /// The stamped decks with their poses (crash from stamped, rows).
     pub stamped: Vec<StampedRecord>,
+    /// The files as they were read.
+    pub files: PerRole<Vec<FileRecord>>,
+    /// The line that maps the same again.
+    pub command_line: String,
     /// Elements of the crash part.
     pub n_elements: usize,
     /// Elements and area by status.
@@ -118,6 +125,17 @@ pub struct StampedRecord {
     pub crash_from_stamped: [[f64; 4]; 4],
     /// Where this comes from.
     pub pose: PoseOrigin,
+}
+
+impl StampedRecord {
+    fn of(placed: &PlacedPart<'_>) -> Self {
+        Self {
+            file: placed.part.path.display().to_string(),
+            length_factor: placed.part.settings.length_factor,
+            crash_from_stamped: placed.crash_from_stamped.to_rows(),
+            pose: placed.origin,
+        }
+    }
 }
 
 /// Elements with one status.
@@ -270,15 +288,9 @@ pub fn map_record(
         direction: DIRECTION.to_owned(),
         crash: crash.path.display().to_string(),
         crash_parts: crash.chosen_part_ids(),
-        stamped: stamped
-            .iter()
-            .map(|placed| StampedRecord {
-                file: placed.part.path.display().to_string(),
-                length_factor: placed.part.settings.length_factor,
-                crash_from_stamped: placed.crash_from_stamped.to_rows(),
-                pose: placed.origin,
-            })
-            .collect(),
+        stamped: stamped.iter().map(StampedRecord::of).collect(),
+        files: file_records(crash, stamped, &units),
+        command_line: command_line(run, crash, stamped),
         n_elements: run.shells.len(),
         statuses: statuses.collect(),
         mapped_area: run.mapped.mapped_area(&run.target.mesh),
@@ -313,6 +325,48 @@ pub fn map_record(
         check.worst_element = check.worst.map(id);
     }
     Ok(record)
+}
+
+/// What is recorded of the files. The units of the first stamped file may be told as they follow from the crash file's.
+fn file_records(
+    crash: &LoadedPart,
+    stamped: &[PlacedPart<'_>],
+    units: &PairUnits,
+) -> PerRole<Vec<FileRecord>> {
+    let of_stamped = stamped.iter().enumerate().map(|(file, placed)| {
+        let known = units.files.stamped.filter(|_| file == 0);
+        file_record(placed.part, known.or_else(|| placed.part.units()))
+    });
+    PerRole::new(
+        vec![file_record(crash, units.files.crash)],
+        of_stamped.collect(),
+    )
+}
+
+/// The line that maps the same again; empty where the crash file has a factor, which only the window gives.
+fn command_line(run: &MapRun, crash: &LoadedPart, stamped: &[PlacedPart<'_>]) -> String {
+    let Some((first, further)) = stamped.split_first() else {
+        return String::new();
+    };
+    if crash.settings.length_factor != 1.0 {
+        return String::new();
+    }
+    let further = further.iter();
+    let further: Vec<(CommandSide<'_>, Similarity)> = further
+        .map(|placed| (placed.part.command_side(), placed.crash_from_stamped))
+        .collect();
+    let recipe = &run.recipe;
+    let line = MapCommandLine {
+        sides: PerRole::new(crash, first.part).map(LoadedPart::command_side),
+        read: &crash.settings.read,
+        pose: &first.crash_from_stamped,
+        further: &further,
+        options: &recipe.options,
+        layers: (recipe.n_layers, recipe.rule, recipe.n_plane),
+        stress_factors: &recipe.stress_factors,
+        stamped_law: recipe.stamped_law.as_deref(),
+    };
+    line.line()
 }
 
 /// Von Mises stress of both sides, where stresses were mapped.

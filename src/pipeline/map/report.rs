@@ -4,13 +4,13 @@ use super::lists::givers;
 use super::record::{DistributionRecord, MapRecord, PairRecord, von_mises_of};
 use super::verdict::{change, change_text};
 use super::{
-    CheckReason, CheckRecord, ComparedRow, DifferenceRecord, MapRun, OtherResult, PipelineError,
-    ProbeRecord, ProbedValue, ShownValue,
+    CheckReason, CheckRecord, ComparedRow, DifferenceRecord, MapRecipe, MapRun, OtherResult,
+    PipelineError, ProbeRecord, ProbedValue, ShownValue,
 };
 use crate::colormap::{ColorMap, ColorScale, Rgb, UNMATCHED};
 use crate::geometry::chunks::{for_chunks, map_chunks};
 use crate::geometry::{Camera, Similarity, TriMesh};
-use crate::mapping::{ShellMesh, SourcePart};
+use crate::mapping::{MapOptions, ShellMesh, SourcePart};
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::forming_values::FormingValue;
 use crate::pipeline::load::LoadedPart;
@@ -22,6 +22,7 @@ use crate::report::html::{
 };
 use crate::report::picture::{Paint, Picture, PictureMesh, picture};
 use crate::role::PerRole;
+use crate::settings::{MAP_SETTINGS, Setting};
 use crate::text::{
     Lengths, counted, factor_note, fixed, grouped, length, millis, percent, share, signed,
 };
@@ -97,8 +98,44 @@ pub fn map_report(
                 (name, MatrixForm::Rows.write(pose))
             })
             .collect(),
+        settings: settings(&run.recipe, painter.lengths),
+        read: record.files.clone(),
+        lengths: painter.lengths,
+        command_line: record.command_line.clone(),
     };
     Ok(report.write())
+}
+
+/// What it was mapped with, as far as section 4 and the command line ask for it: name, value.
+fn settings(recipe: &MapRecipe, lengths: Lengths) -> Vec<(&'static str, String)> {
+    let options = &recipe.options;
+    let mut quantities = options.quantities;
+    let chosen = quantities.named().into_iter().filter(|(_, is_on)| **is_on);
+    let quantities: Vec<&str> = chosen.map(|(name, _)| name).collect();
+    let shown = |row: &Setting<MapOptions>| {
+        let value = row.get(options)?;
+        Some((row.label, row.shown(&value, lengths)))
+    };
+    let of_file = |value: Option<String>| value.unwrap_or_else(|| "as in the file".to_owned());
+    let factors: Vec<String> = recipe.stress_factors.iter().map(f64::to_string).collect();
+    let mut rows = vec![("Quantities", quantities.join(", "))];
+    rows.extend(MAP_SETTINGS.iter().filter_map(shown));
+    rows.extend([
+        ("Layers", of_file(recipe.n_layers.map(|n| n.to_string()))),
+        (
+            "Rule through the thickness",
+            of_file(recipe.rule.map(|rule| rule.name().to_owned())),
+        ),
+        (
+            "Points in the plane",
+            of_file(recipe.n_plane.map(|n| n.to_string())),
+        ),
+        ("Stamped material", of_file(recipe.stamped_law.clone())),
+    ]);
+    if !factors.is_empty() {
+        rows.push(("Stress factors", factors.join(", ")));
+    }
+    rows
 }
 
 /// The headline figures: name, value, what the value is.

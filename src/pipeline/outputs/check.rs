@@ -34,7 +34,7 @@ pub struct Target {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
     /// It is one of the files that are read.
-    #[error("{name} would overwrite a file that is read, {input:?}: {path:?}")]
+    #[error("{name} would overwrite {input:?}, which is read{}", elsewhere(.path, .input))]
     OverwritesInput {
         /// Name of the output.
         name: String,
@@ -123,6 +123,15 @@ pub fn check_targets(targets: &[Target], inputs: &[PathBuf]) -> Vec<Refusal> {
         }));
     }
     refusals
+}
+
+/// Where an output was to go, if another name of the file was given.
+fn elsewhere(path: &Path, input: &Path) -> String {
+    if path == input {
+        String::new()
+    } else {
+        format!(": {path:?}")
+    }
 }
 
 /// The files among `inputs` that would be overwritten.

@@ -33,7 +33,7 @@ pub fn match_record(run: &MatchRun, parts: PerRole<&LoadedPart>) -> MatchRecord 
         },
         sample_node: parts.stamped.sample_node(),
         center: parts.stamped.mesh.aabb().center(),
-        files: PerRole::from_fn(|role| file(parts.get(role), *units.files.get(role))),
+        files: PerRole::from_fn(|role| file_record(parts.get(role), *units.files.get(role))),
         timings: TimingsRecord {
             read_ms: read,
             find_ms: run.times.find_ms,
@@ -78,7 +78,8 @@ pub fn match_sides<'a>(
     sides
 }
 
-fn file(part: &LoadedPart, units: Option<KnownUnits>) -> FileRecord {
+/// What is recorded of a file, with the units that it is taken to have.
+pub(in crate::pipeline) fn file_record(part: &LoadedPart, units: Option<KnownUnits>) -> FileRecord {
     let included = part.model.files.iter().skip(1);
     FileRecord {
         path: part.path.display().to_string(),

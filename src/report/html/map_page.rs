@@ -5,8 +5,12 @@ use maud::{Markup, html};
 
 use super::page::{Column, block, cell, document, fact_table, printable, section, table};
 use super::sections::pictures;
+use super::tables::file_table;
 use super::{Figure, charts};
 use crate::colormap::ColorScale;
+use crate::report::FileRecord;
+use crate::role::PerRole;
+use crate::text::Lengths;
 
 /// A row of numbers: mean, smallest, 5, 50, 95, 99 %, largest.
 pub type NumberRow = [String; 7];
@@ -88,6 +92,14 @@ pub struct MapReport {
     pub compared_with: String,
     /// The matrix of each stamped part by rows.
     pub poses: Vec<(String, String)>,
+    /// What it was mapped with: name, value.
+    pub settings: Vec<(&'static str, String)>,
+    /// The files as they were read.
+    pub read: PerRole<Vec<FileRecord>>,
+    /// How lengths are written.
+    pub lengths: Lengths,
+    /// The line that maps the same again; empty if there is none.
+    pub command_line: String,
 }
 
 impl MapReport {
@@ -171,6 +183,39 @@ impl MapReport {
                 (section("comparison", "Beside another result", &self.other()))
             }
             (section("poses", "Poses", &self.pose_blocks()))
+            (section("settings", "Settings", &self.settings_table()))
+            (section("read", "Files", &self.file_tables()))
+            @if !self.command_line.is_empty() {
+                (section("repeat", "Repeat", &self.repeat()))
+            }
+        }
+    }
+
+    fn settings_table(&self) -> Markup {
+        let rows = self.settings.iter();
+        let rows: Vec<(&str, Markup)> = rows.map(|(name, value)| (*name, cell(value))).collect();
+        fact_table("Settings", &rows)
+    }
+
+    fn file_tables(&self) -> Markup {
+        // Thicknesses stand among the quantities, with the factor they were mapped with.
+        let bare = |file: &FileRecord| FileRecord {
+            thickness: None,
+            ..file.clone()
+        };
+        let of = |title, files: &[FileRecord]| {
+            html! { @for file in files { (file_table(title, &bare(file), self.lengths)) } }
+        };
+        html! {
+            (of("■ Crash file", &self.read.crash))
+            (of("▲ Stamped file", &self.read.stamped))
+        }
+    }
+
+    fn repeat(&self) -> Markup {
+        html! {
+            p { "This line maps the same again:" }
+            (block("the command line", &self.command_line, true))
         }
     }
 

@@ -10,7 +10,7 @@ use crate::report::distances::{COMPARED_P95, COMPARED_RMS};
 use crate::report::matrix::number;
 use crate::report::{FileRecord, outcome_words, start_name};
 use crate::settings::{SETTINGS, Setting};
-use crate::text::{counted, fixed, grouped, length, millis, percent};
+use crate::text::{Lengths, counted, fixed, grouped, length, millis, percent};
 
 /// Groups of starts that are listed.
 const N_GROUPS: usize = 8;
@@ -199,52 +199,54 @@ impl Report<'_> {
 
     /// Both files with what was taken from them.
     pub(super) fn files_section(&self) -> Markup {
-        let files = &self.record.files;
+        let (files, lengths) = (&self.record.files, self.lengths());
         html! {
             div.two {
-                (self.file("■ Crash part, fixed", &files.crash))
-                (self.file("▲ Stamped part, moved", &files.stamped))
+                (file_table("■ Crash part, fixed", &files.crash, lengths))
+                (file_table("▲ Stamped part, moved", &files.stamped, lengths))
             }
         }
     }
+}
 
-    fn file(&self, title: &str, file: &FileRecord) -> Markup {
-        let ids: Vec<String> = file.parts.iter().take(N_IDS).map(u64::to_string).collect();
-        let mut parts = ids.join(", ");
-        if file.parts.len() > N_IDS {
-            parts += &format!(" and {} more", file.parts.len() - N_IDS);
-        }
-        let units = match (file.units, file.units_from) {
-            (Some(units), Some(from)) => format!("{units}, {from}"),
-            _ => "unknown".to_owned(),
-        };
-        let thickness = file.thickness.map(|t| self.lengths().of(t));
-        let mut rows = vec![
-            ("File", cell(printable(&file.path))),
-            ("SHA-256", hash(file.hash)),
-            ("Units", cell(units)),
-            ("Length factor", cell(number(file.length_factor))),
-            ("Parts matched", cell(parts)),
-            ("Nodes in the file", cell(grouped(file.nodes))),
-            ("Triangles matched", cell(grouped(file.triangles))),
-            ("Mean thickness", cell(thickness.as_deref().unwrap_or("–"))),
-            ("Diagnostics", cell(file.findings.to_string())),
-        ];
-        for include in file.includes.iter().take(N_INCLUDES) {
-            let value = html! { (printable(&include.path)) br; (hash(include.hash)) };
-            rows.push(("Includes", value));
-        }
-        for problem in &file.diagnostics {
-            let line = problem
-                .line
-                .map_or_else(String::new, |line| format!("line {line}: "));
-            rows.push((
-                problem.severity_title(),
-                cell(format!("{line}{}", problem.message)),
-            ));
-        }
-        fact_table(title, &rows)
+/// A file with what was taken from it.
+pub(super) fn file_table(title: &str, file: &FileRecord, lengths: Lengths) -> Markup {
+    let ids: Vec<String> = file.parts.iter().take(N_IDS).map(u64::to_string).collect();
+    let mut parts = ids.join(", ");
+    if file.parts.len() > N_IDS {
+        parts += &format!(" and {} more", file.parts.len() - N_IDS);
     }
+    let units = match (file.units, file.units_from) {
+        (Some(units), Some(from)) => format!("{units}, {from}"),
+        _ => "unknown".to_owned(),
+    };
+    let mut rows = vec![
+        ("File", cell(printable(&file.path))),
+        ("SHA-256", hash(file.hash)),
+        ("Units", cell(units)),
+        ("Length factor", cell(number(file.length_factor))),
+        ("Parts used", cell(parts)),
+        ("Nodes in the file", cell(grouped(file.nodes))),
+        ("Triangles used", cell(grouped(file.triangles))),
+        ("Diagnostics", cell(file.findings.to_string())),
+    ];
+    if let Some(thickness) = file.thickness {
+        rows.push(("Mean thickness", cell(lengths.of(thickness))));
+    }
+    for include in file.includes.iter().take(N_INCLUDES) {
+        let value = html! { (printable(&include.path)) br; (hash(include.hash)) };
+        rows.push(("Includes", value));
+    }
+    for problem in &file.diagnostics {
+        let line = problem
+            .line
+            .map_or_else(String::new, |line| format!("line {line}: "));
+        rows.push((
+            problem.severity_title(),
+            cell(format!("{line}{}", problem.message)),
+        ));
+    }
+    fact_table(title, &rows)
 }
 
 fn hash(hash: Option<FileHash>) -> Markup {

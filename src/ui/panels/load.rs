@@ -165,7 +165,7 @@ fn detail(role: Role, part: &Part, state: &AppState) -> String {
     }
     // Before what a narrow column may cut off.
     if part.length_factor() != 1.0 {
-        text += &format!(" · lengths × {}", tidy_factor(part.length_factor()));
+        text += &format!(" × {}", tidy_factor(part.length_factor()));
     }
     if report.n_parts > 1 {
         text += &format!(

@@ -432,11 +432,15 @@ fn eye_ui(ui: &Ui, rect: Rect, row: &Row<'_>, (state, name): (&AppState, &str)) 
     })
 }
 
+/// How strong the tick is that cannot be taken away.
+const FADED: f32 = 0.5;
+
 /// The tick "use for match".
 fn tick_ui(ui: &Ui, rect: Rect, row: &Row<'_>, (state, name): (&AppState, &str)) -> Response {
     let palette = Palette::of(ui);
     let is_used = state.is_part_used(row.at());
-    let is_free = state.jobs.locking_job().is_none();
+    let is_only = state.is_only_part_used(row.at());
+    let is_free = state.jobs.locking_job().is_none() && !is_only;
     let sense = if is_free {
         Sense::click()
     } else {
@@ -445,7 +449,9 @@ fn tick_ui(ui: &Ui, rect: Rect, row: &Row<'_>, (state, name): (&AppState, &str))
     let response = ui.interact(rect, row.widget().with("use"), sense);
     focus_ring(ui, rect, &response);
     let square = Rect::from_center_size(rect.center(), Vec2::splat(14.0));
-    let (fill, stroke) = if is_used {
+    let (fill, stroke) = if is_used && is_only {
+        (palette.accent.gamma_multiply(FADED), Stroke::NONE)
+    } else if is_used {
         (palette.accent, Stroke::NONE)
     } else {
         (palette.field, Stroke::new(1.0, palette.secondary))
@@ -462,7 +468,11 @@ fn tick_ui(ui: &Ui, rect: Rect, row: &Row<'_>, (state, name): (&AppState, &str))
     let label = format!("Use {name} for the match");
     response
         .widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, is_free, is_used, &label));
-    response.on_hover_text("Use for the match")
+    response.on_hover_text(if is_only {
+        "The only part that is used; use another one to leave this one out"
+    } else {
+        "Use for the match"
+    })
 }
 
 #[cfg(test)]

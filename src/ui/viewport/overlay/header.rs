@@ -12,7 +12,7 @@ use crate::app::{AppState, Command, PoseOverlap, Preview, ViewCommand, short_num
 use crate::geometry::camera::StandardView;
 use crate::report::start_kind_words;
 use crate::role::Role;
-use crate::text::{Lengths, counted, whole_percent};
+use crate::text::{Lengths, counted, tidy_factor, whole_percent};
 use crate::ui::focus::is_ringed;
 use crate::ui::row_end::RowEnd;
 use crate::ui::viewport::visible_parts::visible_parts;
@@ -237,15 +237,26 @@ fn facts(over: &Overlay<'_>, role: Role) -> String {
     let n_parts = part.facts.used.len();
     if n_parts > 1 {
         facts += &format!(" · {}", counted(n_parts, "part"));
+    } else if let Some(id) = part
+        .facts
+        .used
+        .first()
+        .filter(|_| part.loaded.report.n_parts > 1)
+    {
+        facts += &format!(" · part {id}");
     }
     let n_files = 1 + state.document.mapping.further.len();
     if role == Role::Stamped && n_files > 1 {
         facts += &format!(" · first of {}", counted(n_files, "file"));
     }
     match state.units_of(role) {
-        Some(known) => facts + " · " + known.units.length.symbol(),
-        None => facts + " · unit unknown",
+        Some(known) => facts += &format!(" · {}", known.units.length.symbol()),
+        None => facts += " · unit unknown",
     }
+    if part.length_factor() != 1.0 {
+        facts += &format!(" × {}", tidy_factor(part.length_factor()));
+    }
+    facts
 }
 
 /// What is shown for as long as something is done: the tool, a preview.

@@ -1,6 +1,6 @@
 //! Numbers as people type them: with a decimal comma, grouped digits, a unit, or `k` for thousand.
 
-use crate::text::Lengths;
+use super::Lengths;
 use crate::units::LengthUnit;
 
 /// Largest size of a typed number; what is larger is a slip, and would overflow where it is added.
@@ -14,6 +14,12 @@ pub fn typed_number(text: &str, unit: &str) -> Option<f64> {
     let number = text.strip_suffix(unit.trim()).unwrap_or(text);
     let number: f64 = plain(number)?.parse().ok()?;
     (number.abs() <= LARGEST).then_some(number)
+}
+
+/// Whether a text is a number that is larger than any that is taken.
+pub fn is_too_large(text: &str) -> bool {
+    let number = plain(text).and_then(|number| number.parse().ok());
+    number.is_some_and(|number: f64| number.abs() > LARGEST)
 }
 
 /// A length in the window's unit; typed in another one, `0.5 in`, it is converted.
