@@ -26,6 +26,7 @@ impl AppState {
             self.view.sections.arrange();
         }
         let was_start_shown = self.shown_start().is_some();
+        let were_compared = self.are_windows_compared();
         let was_locked = self.jobs.is_unlocked().err();
         let mut effects = self.apply_one(command);
         while !self.follow_ups.is_empty() {
@@ -36,7 +37,8 @@ impl AppState {
         if let Some(Reason(why)) = was_locked.filter(|_| self.jobs.is_unlocked().is_ok()) {
             self.log.notices.withdraw_text(why);
         }
-        if self.shown_start().is_some() != was_start_shown {
+        let are_compared = self.are_windows_compared();
+        if self.shown_start().is_some() != was_start_shown || are_compared && !were_compared {
             self.with_scene(|view, scene| view.keep_whole(Role::Crash, scene));
         }
         effects.extend(self.keep_measuring());

@@ -137,6 +137,7 @@ impl AppState {
         let starts = starts.map_or(&[][..], |starts| starts.as_slice());
         let scene = Scene {
             is_beside: beside.is_some_and(FreeWindow::is_picture),
+            are_compared: self.are_windows_compared(),
             pose: self.shown_pose(),
             starts,
             document: &self.document,

@@ -2159,6 +2159,55 @@ fn the_picture_stays_where_it_is_when_another_map_has_another_legend() {
 }
 
 #[test]
+fn an_earlier_legend_brings_the_earlier_picture() {
+    let mut window = Window::with_both();
+    let role = Role::Crash;
+    let seen = |window: &mut Window, [beside, above]: [f64; 2]| {
+        let covered = Covered {
+            beside: [0.0, beside],
+            above,
+            ..Covered::default()
+        };
+        let aspect = 1.0;
+        window.apply(ViewCommand::SetRoom(role, ViewRoom { aspect, covered }));
+        *window.state.view.cameras.get(role)
+    };
+    let (slim, wide) = ([0.16, 0.6], [0.4, 0.7]);
+    let first = seen(&mut window, slim);
+    for _ in 0..2 {
+        assert_ne!(seen(&mut window, wide), first);
+        assert_eq!(seen(&mut window, slim), first);
+    }
+}
+
+#[test]
+fn after_moving_back_and_without_a_link_each_window_shows_its_own_part() {
+    let mut window = Window::with_both();
+    window.apply(ViewCommand::FitBoth);
+    let own = window.state.view.cameras;
+    window.act(Action::ToggleMoveOver);
+    // The window of the stamped part is free meanwhile, its camera elsewhere.
+    let mut far = own.stamped;
+    far.height *= 100.0;
+    window.state.view.cameras.stamped = far;
+    window.act(Action::ToggleMoveOver);
+    assert_eq!(window.state.view.cameras, own);
+    // A link that shared the zoom of one of them ends.
+    let large = shapematch::geometry::Camera {
+        world_from_view: own.crash.world_from_view,
+        height: 100.0 * own.stamped.height,
+        ..own.stamped
+    };
+    window.state.view.cameras.stamped = large;
+    window.apply(ViewCommand::SetFocus(Role::Stamped));
+    window.apply(ViewCommand::ToggleLink);
+    assert_eq!(window.state.view.cameras.crash.height, large.height);
+    window.apply(ViewCommand::ToggleLink);
+    assert_eq!(window.state.view.cameras.crash, own.crash);
+    assert_eq!(window.state.view.cameras.stamped, large);
+}
+
+#[test]
 fn a_part_fills_the_room_that_is_free_again() {
     let mut window = Window::with_both();
     let role = Role::Crash;

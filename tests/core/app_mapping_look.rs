@@ -3,8 +3,9 @@
 
 use shapematch::app::{
     Action, ColorBy, Effect, ExportCommand, FileCommand, FreeWindow, HistoryCommand, LogStep,
-    MapCommand, MapPicture, Section, ViewCommand,
+    MapCommand, MapPicture, Section, ViewCommand, ViewRoom,
 };
+use shapematch::geometry::camera::Covered;
 use shapematch::mapping::{MapMethod, Status};
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::map::WriteKind;
@@ -139,6 +140,46 @@ fn mapped_and_stamped_are_wiped_and_blinked_between_where_both_show_one_quantity
     assert!(window.state.is_mapping_apart());
     window.act(Action::ToggleMoveOver);
     assert!(!window.state.is_mapping_apart());
+}
+
+#[test]
+fn mapped_and_stamped_keep_one_scale_whatever_their_legends() {
+    let (mut window, _folder) = mapped_in_full();
+    if window.state.view.is_moved_over {
+        window.act(Action::ToggleMoveOver);
+    }
+    assert!(window.state.is_mapping_shown());
+    window.apply(ViewCommand::FitBoth);
+    let legend = |window: &mut Window, role: Role, [beside, above]: [f64; 2]| {
+        let covered = Covered {
+            beside: [0.0, beside],
+            above,
+            ..Covered::default()
+        };
+        let aspect = 1.0;
+        window.apply(ViewCommand::SetRoom(role, ViewRoom { aspect, covered }));
+    };
+    let (slim, status) = ([0.16, 0.6], [0.45, 0.3]);
+    for role in Role::ALL {
+        legend(&mut window, role, slim);
+    }
+    let heights = |window: &Window| {
+        let cameras = &window.state.view.cameras;
+        [cameras.crash.height, cameras.stamped.height]
+    };
+    let first = window.state.view.cameras;
+    assert_eq!(heights(&window)[0], heights(&window)[1]);
+    legend(&mut window, Role::Crash, status);
+    assert_eq!(heights(&window)[0], heights(&window)[1]);
+    assert_ne!(heights(&window)[0], first.crash.height);
+    legend(&mut window, Role::Crash, slim);
+    assert_eq!(window.state.view.cameras, first);
+    // A window that was brought closer by hand keeps that.
+    let mut close = first.stamped;
+    close.height *= 0.3;
+    window.apply(ViewCommand::SetCamera(Role::Stamped, close));
+    legend(&mut window, Role::Crash, status);
+    assert_eq!(window.state.view.cameras.stamped, close);
 }
 
 #[test]

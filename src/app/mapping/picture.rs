@@ -159,6 +159,11 @@ impl AppState {
             && (by.map_picture().is_some() || self.mapped_for(by).is_some())
     }
 
+    /// True if each window shows its own part, the left one with what was mapped from the right one.
+    pub(in crate::app) fn are_windows_compared(&self) -> bool {
+        !self.view.is_moved_over && self.is_mapping_shown()
+    }
+
     /// True if a window shows values of a mapping that would be made otherwise now.
     pub fn is_old_mapping_shown(&self, window: Role) -> bool {
         let is_mapped = window == Role::Crash && self.is_mapping_shown();

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{BottomTab, Display, Fitted, Section, ViewCommand, ViewRoom, ViewState};
+use super::{BottomTab, Display, FitRooms, Fitted, Section, ViewCommand, ViewRoom, ViewState};
 use crate::app::{AppState, Document, Part, PartRef, ShownFile, facts};
 use crate::geometry::{Aabb, Camera, Point3, Similarity, Vector3};
 use crate::pipeline::load::LoadedPart;
@@ -13,6 +13,9 @@ use crate::role::Role;
 const MAX_FITTED: usize = 20_000;
 /// How much of the part is in view around a place that is looked at.
 const CLOSE: f64 = 0.12;
+/// Windows that are compared have one scale, unless one part needs a picture so many times as high as the other: it
+/// would leave that one too small to be seen.
+const ONE_SCALE: f64 = 2.0;
 
 /// What there is to be seen.
 pub(in crate::app) struct Scene<'a> {
@@ -26,6 +29,8 @@ pub(in crate::app) struct Scene<'a> {
     pub further: Vec<ShownFile>,
     /// The right window shows something with the camera of the left one.
     pub is_beside: bool,
+    /// The left window shows what was mapped from the part in the right one.
+    pub are_compared: bool,
 }
 
 impl ViewState {
@@ -121,7 +126,7 @@ impl ViewState {
                 Some(bounds) => self.fit_window(role, &bounds.corners(), scene),
                 None => self.fit_all(role, scene),
             },
-            ViewCommand::ToggleLink => self.toggle_link(),
+            ViewCommand::ToggleLink => self.toggle_link(scene),
             _ => {}
         }
     }
@@ -138,10 +143,20 @@ impl ViewState {
         }
     }
 
-    fn toggle_link(&mut self) {
+    fn toggle_link(&mut self, scene: &Scene<'_>) {
         self.are_linked = !self.are_linked;
         let (role, camera) = (self.focus, *self.cameras.get(self.focus));
+        let follows_by_itself = self.is_fitted(role.other());
         self.set_camera(role, camera);
+        if self.are_linked && follows_by_itself {
+            self.note_fitted(role.other());
+        }
+        // What took over the zoom of the other window, and was moved by nobody, shows its own part whole again.
+        if !self.are_linked {
+            for role in Role::ALL {
+                self.keep_whole(role, scene);
+            }
+        }
     }
 
     fn fit_window(&mut self, role: Role, points: &[Point3], scene: &Scene<'_>) {
@@ -155,8 +170,10 @@ impl ViewState {
     /// The room for a window's picture; one camera may serve two windows.
     fn room(&self, role: Role, scene: &Scene<'_>) -> ViewRoom {
         let own = *self.rooms.get(role);
-        if role == Role::Crash && scene.is_beside {
-            own.shared(&self.rooms.stamped)
+        let other = self.rooms.get(role.other());
+        let is_shared = role == Role::Crash && scene.is_beside;
+        if is_shared || scene.are_compared && own.has_shape_of(other) {
+            own.shared(other)
         } else {
             own
         }
@@ -164,10 +181,16 @@ impl ViewState {
 
     /// Fits a fitted window again, with the place for a legend that it was fitted with.
     fn fit_again(&mut self, role: Role, scene: &Scene<'_>) {
-        let room = self.room(role, scene);
+        let rooms = self.rooms_again(role, scene);
+        self.refit(role, rooms, scene);
+    }
+
+    fn rooms_again(&self, role: Role, scene: &Scene<'_>) -> FitRooms {
+        let now = self.room(role, scene);
         let fitted = self.fitted.get(role).as_ref();
-        let room = fitted.map_or(room, |fitted| room.keeping_legend_of(&fitted.room));
-        self.refit(role, &room, scene);
+        fitted.map_or(FitRooms::new(now), |fitted| {
+            now.keeping_legend_of(&fitted.first_room)
+        })
     }
 
     /// Takes over the shape of a window and what lies over it; what was seen whole stays so. A legend that comes up
@@ -207,8 +230,8 @@ impl ViewState {
     /// Fits what a window shows, tightly: a turned sheet fills the picture better than its box.
     pub(in crate::app) fn fit_all(&mut self, role: Role, scene: &Scene<'_>) {
         self.remember_camera(role);
-        let room = self.room(role, scene);
-        self.refit(role, &room, scene);
+        let rooms = FitRooms::new(self.room(role, scene));
+        self.refit(role, rooms, scene);
     }
 
     /// Linked cameras share their zoom: the window that has the keys is fitted last, so that it shows all.
@@ -218,8 +241,58 @@ impl ViewState {
         }
     }
 
-    fn refit(&mut self, role: Role, room: &ViewRoom, scene: &Scene<'_>) {
+    fn refit(&mut self, role: Role, rooms: FitRooms, scene: &Scene<'_>) {
         self.is_moved_by_hand = false;
+        let other = role.other();
+        let is_other_fitted = self.is_fitted(other);
+        self.fit_to(role, rooms, scene);
+        if scene.are_compared && is_other_fitted {
+            let rooms = self.rooms_again(other, scene);
+            let height = self.cameras.get(role).height;
+            self.fit_to(other, rooms, scene);
+            // A linked one has followed.
+            self.cameras.get_mut(role).height = height;
+            self.give_one_scale(scene);
+        }
+    }
+
+    fn fit_to(&mut self, role: Role, rooms: FitRooms, scene: &Scene<'_>) {
+        let other = role.other();
+        // A linked camera comes along, moved by nobody.
+        let is_other_fitted = self.are_linked && self.is_fitted(other);
+        self.fit(role, &self.points(role, scene), &rooms.now);
+        *self.fitted.get_mut(role) = Some(Fitted {
+            camera: *self.cameras.get(role),
+            first_room: rooms.first,
+        });
+        if is_other_fitted {
+            self.note_fitted(other);
+        }
+    }
+
+    /// Gives both windows the scale of the one that shows more. What each shows stays in the middle of its room.
+    fn give_one_scale(&mut self, scene: &Scene<'_>) {
+        let heights = Role::ALL.map(|role| self.cameras.get(role).height);
+        let [low, high] = [heights[0].min(heights[1]), heights[0].max(heights[1])];
+        for role in Role::ALL {
+            if self.are_linked || high <= ONE_SCALE * low {
+                let points = self.points(role, scene);
+                self.cameras.get_mut(role).zoom_out_about(&points, high);
+            }
+            self.note_fitted(role);
+        }
+    }
+
+    /// The present camera of a window counts as the one it was fitted with.
+    fn note_fitted(&mut self, role: Role) {
+        let camera = *self.cameras.get(role);
+        if let Some(fitted) = self.fitted.get_mut(role) {
+            fitted.camera = camera;
+        }
+    }
+
+    /// What a window is fitted to.
+    fn points(&self, role: Role, scene: &Scene<'_>) -> Vec<Point3> {
         let stamped_pose = stamped_pose(role, scene);
         let mut points = Vec::new();
         for of in self.shown_in(role) {
@@ -252,23 +325,7 @@ impl ViewState {
             let poses = poses.filter_map(|pose| result.run.pose(pose));
             points.extend(poses.flat_map(|pose| spread(&part.loaded, pose)));
         }
-        let other = role.other();
-        // A linked camera comes along, moved by nobody.
-        let is_other_fitted = self.are_linked && self.is_fitted(other);
-        self.fit(role, &points, room);
-        *self.fitted.get_mut(role) = Some(Fitted {
-            camera: *self.cameras.get(role),
-            room: *room,
-        });
-        let camera = *self.cameras.get(other);
-        if let Some(fitted) = self
-            .fitted
-            .get_mut(other)
-            .as_mut()
-            .filter(|_| is_other_fitted)
-        {
-            fitted.camera = camera;
-        }
+        points
     }
 
     /// The parts a window shows.
@@ -306,7 +363,11 @@ impl ViewState {
             self.is_moved_over = true;
             self.focus = Role::Crash;
         }
-        self.fit_all(Role::Crash, scene);
+        if self.is_moved_over || self.are_linked {
+            self.fit_all(Role::Crash, scene);
+        } else {
+            self.fit_both(scene);
+        }
     }
 
     fn set_tab(&mut self, tab: BottomTab) {

@@ -154,7 +154,24 @@ impl ViewState {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Fitted {
     camera: Camera,
-    room: ViewRoom,
+    /// The room it was fitted into at first, before other legends came.
+    first_room: ViewRoom,
+}
+
+/// The room that a window is fitted into, and the one whose legend it goes back to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct FitRooms {
+    now: ViewRoom,
+    first: ViewRoom,
+}
+
+impl FitRooms {
+    fn new(room: ViewRoom) -> Self {
+        Self {
+            now: room,
+            first: room,
+        }
+    }
 }
 
 /// The shape of a 3D window and what lies over its picture.
@@ -197,24 +214,31 @@ impl ViewRoom {
         pairs.any(|(a, b)| (a - b).abs() > 0.01)
     }
 
-    /// This room with all that the legend has covered since the window was fitted into `before`: another map has a
-    /// legend of another size, and the picture must not jump with it. A window of another shape, one whose legend
-    /// came to an edge that was free, and one that has no legend any more, is fitted anew.
-    fn keeping_legend_of(&self, before: &Self) -> Self {
-        let has_other_shape = (self.aspect / before.aspect).ln().abs() > 0.01;
+    /// This room with all that the legend covered when the window was fitted `first`: a map with a smaller legend must
+    /// not move the picture. One with a larger legend does, until the legend is as it was. A window of another shape,
+    /// one whose legend came to an edge that was free, and one that has no legend any more, is fitted anew.
+    fn keeping_legend_of(&self, first: &Self) -> FitRooms {
         let has_legend = self.covered.beside != [0.0; 2];
-        if has_other_shape || !has_legend || self.has_legend_where_free(before) {
-            return *self;
+        if !self.has_shape_of(first) || !has_legend || self.has_legend_where_free(first) {
+            return FitRooms::new(*self);
         }
-        let Covered { beside, above, .. } = self.covered.union(&before.covered);
-        Self {
+        let with_legend = |legend: Covered| Self {
             covered: Covered {
-                beside,
-                above,
+                beside: legend.beside,
+                above: legend.above,
                 ..self.covered
             },
             ..*self
+        };
+        FitRooms {
+            now: with_legend(self.covered.union(&first.covered)),
+            first: with_legend(first.covered),
         }
+    }
+
+    /// True if the window is as wide for its height as another.
+    fn has_shape_of(&self, other: &Self) -> bool {
+        (self.aspect / other.aspect).ln().abs() <= 0.01
     }
 
     /// True if the legend is at an edge that was free `before`: it came up, or was moved there.

@@ -149,6 +149,19 @@ impl Camera {
         *self = fitted[usize::from(is_above)];
     }
 
+    /// Shows points in a picture of another height, in world lengths at its target, with the middle of what is seen
+    /// of them where it is. O(points).
+    pub fn zoom_out_about(&mut self, points: &[Point3], height: f64) {
+        let seen: Vec<Point3> = points.iter().map(|p| self.view_point(p).into()).collect();
+        if !seen.is_empty() {
+            let middle = Aabb::of_points(&seen).center().coords;
+            let anchor = self.target + self.world_from_view * middle;
+            self.zoom(height / self.height, &anchor, &Aabb::empty());
+            // To the last digit, so that two cameras have one.
+            self.height = height;
+        }
+    }
+
     fn fit_beside_corner(&mut self, points: &[Point3], aspect: f64, covered: &Covered) {
         self.fit_beside_edges(points, aspect, covered);
         if !self.shows_any_in_corner(points, aspect, covered.corner) {
