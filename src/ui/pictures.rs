@@ -24,7 +24,7 @@ type News = (NoticeLevel, String);
 /// A picture that is wanted.
 #[derive(Debug, Clone)]
 pub struct Wanted {
-    /// How it is taken.
+    /// How it is taken; without overlays unless they are chosen.
     pub choice: PictureChoice,
     /// Where it goes.
     pub place: PicturePlace,
@@ -53,7 +53,7 @@ impl Pictures {
     /// Asks for a picture.
     pub fn want(&mut self, wanted: Wanted, ctx: &egui::Context) {
         let choice = wanted.choice;
-        if choice.has_overlays {
+        if choice.overlays == Some(true) {
             let (sender, waking) = (self.told.0.clone(), ctx.clone());
             let taking = taking(ctx);
             let callback = ScreenshotCallback::new(move |screen| {
@@ -188,7 +188,7 @@ mod tests {
         let take = || {
             let wanted = Wanted {
                 choice: PictureChoice {
-                    has_overlays: true,
+                    overlays: Some(true),
                     ..PictureChoice::default()
                 },
                 place: PicturePlace::File(PathBuf::new()),

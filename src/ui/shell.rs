@@ -292,6 +292,8 @@ impl Shell {
                 texts,
             } => {
                 let inputs = self.state.document.files();
+                let overlays = Some(choice.has_overlays(&self.state));
+                let choice = PictureChoice { overlays, ..choice };
                 self.pictures.want(
                     Wanted {
                         choice,

@@ -60,6 +60,37 @@ fn the_first_picture_asks_for_a_place_and_the_next_goes_beside_it() {
 }
 
 #[test]
+fn a_picture_of_values_has_their_numbers_unless_it_is_chosen_otherwise() {
+    let mut window = Window::with_both();
+    let usual = PictureChoice::default();
+    assert!(!usual.has_overlays(&window.state));
+    assert_eq!(usual.size_of(&window.state), usual.size);
+    let mut display = window.state.view.display.clone();
+    display.color_by = ColorBy::Thickness;
+    window.apply(ViewCommand::SetDisplay(Box::new(display)));
+    assert!(usual.has_overlays(&window.state));
+    assert_eq!(usual.size_of(&window.state), PictureSize::Window(1));
+    let overlays = Some(false);
+    let plain = PictureChoice { overlays, ..usual };
+    let bare = PictureChoice {
+        is_transparent: true,
+        ..usual
+    };
+    for choice in [plain, bare] {
+        assert!(!choice.has_overlays(&window.state), "{choice:?}");
+        assert_eq!(choice.size_of(&window.state), usual.size);
+    }
+    // The key that leaves out the background leaves out what would bring it back.
+    window.apply(ExportCommand::TakePicture {
+        is_transparent: true,
+    });
+    match last_effect(&window) {
+        Effect::AskPicture { choice, .. } => assert!(!choice.has_overlays(&window.state)),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
 fn a_card_for_a_file_in_another_unit_is_answered_with_the_converted_file() {
     let mut window = Window::with_both();
     window.apply(MatchCommand::Run);

@@ -6,8 +6,8 @@ use egui_kittest::kittest::Queryable as _;
 use shapematch::app::{Dialog, ExportCommand, PictureChoice, PictureSize, PictureWindows};
 use shapematch::ui::Shell;
 
-use super::layout::{texts, with_legend};
-use super::story::{click, finish, window};
+use super::layout::{point_at_crash_part, texts, with_legend};
+use super::story::{click, finish, matched, window};
 use super::typed::type_into;
 
 #[test]
@@ -103,7 +103,7 @@ fn a_picture_with_its_legend_has_no_buttons() {
     let before = n_drawn(&window, &told);
     let write = ExportCommand::WritePicture {
         choice: PictureChoice {
-            has_overlays: true,
+            overlays: Some(true),
             ..PictureChoice::default()
         },
         path: folder.path().join("image.png"),
@@ -121,4 +121,34 @@ fn a_picture_with_its_legend_has_no_buttons() {
     for name in buttons {
         assert!(n_drawn(&window, &[name]) > 0, "{name}");
     }
+}
+
+#[test]
+fn a_picture_does_not_say_what_is_under_the_pointer() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = matched();
+    let is_node = |row: &String| row.contains("node\u{a0}") || row.contains("node ");
+    let found = point_at_crash_part(&mut window, |rows| {
+        rows.iter().find(|row| is_node(row)).cloned()
+    });
+    let readout = found.expect("a node under the pointer");
+    let is_there = |window: &Harness<'static, Shell>| {
+        let mut texts = texts(window).into_iter();
+        texts.any(|text| text.text == readout)
+    };
+    assert!(is_there(&window), "{readout}");
+    let write = ExportCommand::WritePicture {
+        choice: PictureChoice {
+            overlays: Some(true),
+            ..PictureChoice::default()
+        },
+        path: folder.path().join("image.png"),
+    };
+    let ctx = window.ctx.clone();
+    window.state_mut().run_commands(vec![write.into()], &ctx);
+    // The harness takes the picture of this frame.
+    window.step();
+    assert!(!is_there(&window), "{readout}");
+    window.run_steps(2);
+    assert!(is_there(&window), "{readout}");
 }

@@ -68,7 +68,11 @@ impl Work<'_> {
     /// As the last time, into the folder of the last time; the first time it asks.
     fn take_picture(&self, is_transparent: bool) -> Vec<Effect> {
         let mut choice = self.settings.picture;
-        choice.is_transparent |= is_transparent;
+        if is_transparent {
+            // The screen has its background.
+            choice.is_transparent = true;
+            choice.overlays = Some(false);
+        }
         vec![match &self.settings.picture_folder {
             Some(folder) => {
                 let (folder, stem) = (folder.clone(), self.document.picture_stem());

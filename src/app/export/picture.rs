@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::Document;
+use crate::app::{AppState, Document};
 use crate::pipeline::outputs::stem;
 use crate::report::{DIRECTION, build_id, number};
 use crate::role::Role;
@@ -75,8 +75,9 @@ pub struct PictureChoice {
     pub windows: PictureWindows,
     /// Draws the parts on transparent ground.
     pub is_transparent: bool,
-    /// As on the screen, with legend, names and scale; then the size is that of the screen.
-    pub has_overlays: bool,
+    /// As on the screen, with legend, names and scale; then the size is that of the screen. Without a choice: where
+    /// colours show values, which say nothing without their numbers.
+    pub overlays: Option<bool>,
 }
 
 impl Default for PictureChoice {
@@ -85,7 +86,7 @@ impl Default for PictureChoice {
             size: PictureSize::Window(2),
             windows: PictureWindows::default(),
             is_transparent: false,
-            has_overlays: false,
+            overlays: None,
         }
     }
 }
@@ -99,6 +100,22 @@ impl PictureChoice {
             PictureSize::Pixels(sides) => PictureSize::Pixels(sides.map(|s| s.clamp(low, high))),
         };
         self
+    }
+
+    /// True if a picture is taken with legend, names and scale, as `state` is.
+    pub fn has_overlays(&self, state: &AppState) -> bool {
+        let shows_values = |role| state.color_by(role).shows_values();
+        let by_itself = !self.is_transparent && Role::ALL.into_iter().any(shows_values);
+        self.overlays.unwrap_or(by_itself)
+    }
+
+    /// The size a picture is taken in, as `state` is.
+    pub fn size_of(&self, state: &AppState) -> PictureSize {
+        if self.has_overlays(state) {
+            PictureSize::Window(1)
+        } else {
+            self.size
+        }
     }
 }
 

@@ -126,6 +126,11 @@ impl ColorBy {
         }
     }
 
+    /// True for colours that a legend explains.
+    pub fn shows_values(self) -> bool {
+        !matches!(self, Self::Role | Self::Part)
+    }
+
     /// True for the maps that keys turn on and off: they speak of how the parts meet.
     pub fn is_match_map(self) -> bool {
         matches!(self, Self::Deviation | Self::Overlap | Self::Uncertainty)

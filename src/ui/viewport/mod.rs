@@ -33,6 +33,7 @@ use egui::{Rect, Sense, Ui, WidgetInfo};
 use crate::app::{AppState, Command, Preview, ViewCommand};
 use crate::geometry::{Camera, Point3};
 use crate::role::{PerRole, Role};
+use crate::ui::pictures::is_screen_taken;
 use crate::ui::theme::Look;
 use fields::{FieldKind, FieldStore};
 use frame::{FrameContext, ViewFrame};
@@ -393,15 +394,17 @@ impl Viewports {
             picking::update(frame, commands)
         };
         let kind = FieldKind::of(state.color_by(role));
+        // What is under the pointer is no part of a picture that is saved.
+        let is_pointed = !is_screen_taken(ui.ctx());
         let over = overlay::Overlay {
             frame,
             drag: window.navigator.drag(),
-            hit: hit.as_ref(),
+            hit: hit.as_ref().filter(|_| is_pointed),
             scale: kind.and_then(|kind| Some((kind, self.fields.scale(role, state)?))),
             kind,
             summary: self.fields.summary(role),
-            hint: window.tools.hint(state),
-            pick,
+            hint: window.tools.hint(state).filter(|_| is_pointed),
+            pick: pick.filter(|_| is_pointed),
             is_preparing: is_preparing(state, frame.view, frame.picture),
         };
         window.tools.paint(ui, frame, &FreeRoom::of(ui, &over));
