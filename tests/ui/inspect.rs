@@ -403,6 +403,64 @@ fn after_a_match_the_tab_tells_the_numbers_and_goes_to_the_worst_places() {
     window.check_accessibility();
 }
 
+/// Seen along Y, X falls to the right. In half of a usual screen the controls stand in one row.
+#[test]
+fn a_section_tells_the_coordinates_of_the_part_and_its_controls_stand_in_one_row() {
+    let mut window = matched();
+    window.set_size(vec2(1600.0, 1000.0));
+    window.run_steps(3);
+    click(&mut window, "Move over");
+    finish(&mut window);
+    window.key_press(egui::Key::S);
+    window.run_steps(3);
+    let across = Action::SectionY.command(window.state().state()).unwrap();
+    let ctx = window.ctx.clone();
+    window.state_mut().run_commands(vec![across], &ctx);
+    let begin = std::time::Instant::now();
+    while !texts(&window)
+        .iter()
+        .any(|text| text.text.starts_with("Widest gap"))
+    {
+        assert!(begin.elapsed().as_secs() < 120, "no outlines");
+        std::thread::sleep(std::time::Duration::from_millis(10));
+        window.run_steps(1);
+    }
+    window.run_steps(5);
+    let painted = texts(&window);
+    let row = |name: &str| {
+        let text = painted.iter().find(|text| text.text == name);
+        text.unwrap_or_else(|| panic!("no {name}")).rect
+    };
+    let close = window.get_by_label("Section (section)").rect();
+    for name in ["All", "Flip", "Worst gap"] {
+        assert!(
+            (row(name).center().y - close.center().y).abs() < 4.0,
+            "{name}"
+        );
+    }
+    let axis = row("X, mm");
+    let bounds = window.state().state().visible_bounds(Role::Crash);
+    let below = painted.iter().filter(|text| {
+        let is_number = text.text.ends_with(" mm") && text.rect.left() > close.left() - 700.0;
+        is_number && text.rect.top() > axis.top() && text.rect.top() < axis.bottom() + 20.0
+    });
+    let mut numbers: Vec<(f32, f64)> = below
+        .filter_map(|text| {
+            let number = text.text.trim_end_matches(" mm").replace('−', "-");
+            Some((text.rect.left(), number.parse().ok()?))
+        })
+        .collect();
+    numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
+    assert!(numbers.len() > 1, "{numbers:?}");
+    assert!(
+        numbers.windows(2).all(|pair| pair[1].1 < pair[0].1),
+        "{numbers:?}"
+    );
+    let size = bounds.diagonal();
+    let is_near = |x: f64| (bounds.min.x - size..bounds.max.x + size).contains(&x);
+    assert!(numbers.iter().all(|(_, x)| is_near(*x)), "{numbers:?}");
+}
+
 /// Each drawing of the section, in its tab and in the free window, has a view of its own, which stays while another
 /// tab is shown.
 #[test]

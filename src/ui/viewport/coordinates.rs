@@ -12,13 +12,17 @@ use crate::text::tick_number;
 const APART: f64 = 80.0;
 const AIR: f64 = 12.0;
 
-/// A chart, so wide without its upright axis, with coordinates and their unit along both axes.
+/// A chart, so wide without its upright axis, with coordinates and their unit along both axes. Along one of sign −1
+/// they fall.
 pub(super) fn with_coordinates<'a>(
     ui: &Ui,
     plot: Plot<'a>,
     (width, unit): (f32, &'static str),
+    [across, up]: [f64; 2],
 ) -> Plot<'a> {
-    let text = move |value, step| format!("{}{unit}", tick_text(value, step));
+    // Zero has no sign.
+    let signed = move |sign: f64, value: f64, step| tick_text(sign * value + 0.0, step) + unit;
+    let text = move |value, step| signed(across, value, step);
     let painter = ui.painter().clone();
     let font = egui::TextStyle::Body.resolve(ui.style());
     let numbers = Rc::new(Across {
@@ -38,7 +42,7 @@ pub(super) fn with_coordinates<'a>(
         let text = has_number.then(|| text(mark.value, mark.step_size));
         text.unwrap_or_default()
     })
-    .y_axis_formatter(move |mark, _| text(mark.value, mark.step_size))
+    .y_axis_formatter(move |mark, _| signed(up, mark.value, mark.step_size))
 }
 
 /// The numbers along the axis across: as near to each other as they have room, whole at both ends.

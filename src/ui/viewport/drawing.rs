@@ -2,12 +2,12 @@
 //! scale, distances between clicked points, the gap at the cursor, and gaps drawn ten times as wide.
 
 mod choices;
+mod controls;
 
 use std::sync::Arc;
 
 use egui::{
-    Align, Align2, Button, Color32, FontId, Id, Layout, Rect, RichText, Sense, Stroke, Ui, Vec2,
-    WidgetInfo, vec2,
+    Align, Align2, Color32, FontId, Id, Layout, Rect, RichText, Stroke, Ui, Vec2, WidgetInfo, vec2,
 };
 use egui_plot::{
     LineStyle, Plot, PlotBounds, PlotPoint, PlotPoints, PlotTransform, PlotUi, Points,
@@ -15,16 +15,16 @@ use egui_plot::{
 
 use self::choices::{Choices, Zoom, zoom_by_wheel};
 use super::coordinates::with_coordinates;
-use super::outlines::{Lie, Outline, around, direction_name};
+use super::outlines::{Lie, Outline, around, direction_name, told_along};
 use super::sections::{self, Cuts, Gaps};
 use super::unused::Lines;
-use crate::app::{Action, AppState, Command, InspectCommand, SectionView};
+use crate::app::{Action, AppState, Command};
 use crate::geometry::{Gap, Plane, Point3, SectionLine, Vector3, gap_to_nearest, nearest_on_lines};
 use crate::role::Role;
 use crate::text::capital;
 use crate::ui::panels::bottom::charts::exact_line;
 use crate::ui::theme::{Look, UNIT, color};
-use crate::ui::widgets::{file_swatch, nothing_yet, paint_role_mark, segments};
+use crate::ui::widgets::nothing_yet;
 
 /// Clicks this near to an outline take a point of it.
 const SNAP: f64 = 12.0;
@@ -37,9 +37,9 @@ const BELOW: f32 = 5.0;
 const ABOVE: f32 = 1.8;
 /// A room so many times as wide as it is high has the controls at its side.
 const WIDE: f32 = 2.2;
-/// Width of the controls at the side, and of the choice of directions.
+/// Width of the controls at the side, and the air between their groups where they stand in a row.
 const SIDE: f32 = 190.0;
-const CHOICE: f32 = 172.0;
+const CLOSE_BY: f32 = 4.0;
 /// Room for the numbers of the upright axis.
 const AXIS: f32 = 46.0;
 /// At first so much of the outlines is seen around the worst gap, at most, and so many of its widths,
@@ -135,132 +135,22 @@ impl Drawing<'_> {
         commands: &mut Vec<Command>,
     ) -> Seen {
         ui.horizontal_wrapped(|ui| {
+            // All in one row of a window that is half of a usual screen.
+            ui.spacing_mut().button_padding.x = 5.0;
             self.names(ui);
-            ui.add_space(UNIT);
+            ui.add_space(CLOSE_BY);
             self.directions(ui, commands);
-            ui.add_space(UNIT);
+            ui.add_space(CLOSE_BY);
             self.plane_buttons(ui, commands);
-            ui.add_space(UNIT);
+            ui.add_space(CLOSE_BY);
             self.zoom_buttons(ui, choices);
-            ui.add_space(UNIT);
+            ui.add_space(CLOSE_BY);
             self.switch(ui, CLOSING, commands);
         });
         let size = vec2(ui.available_width(), ui.available_height() - 24.0);
         let seen = self.plot(ui, size, (id, choices));
         self.foot(ui, &seen, &choices.picked);
         seen
-    }
-
-    /// Which colour is which part.
-    fn names(&self, ui: &mut Ui) {
-        for role in Role::ALL {
-            ui.spacing_mut().item_spacing.x = 4.0;
-            let (rect, _) = ui.allocate_exact_size(Vec2::splat(11.0), Sense::hover());
-            paint_role_mark(ui.painter(), rect, role, self.look.role(role));
-            ui.label(RichText::new(role.word()).size(12.0));
-            ui.add_space(6.0);
-        }
-        for file in self.state.shown_further() {
-            let (rect, swatch) = ui.allocate_exact_size(Vec2::splat(11.0), Sense::hover());
-            file_swatch(ui.painter(), rect, file.number);
-            let name = file.loaded.file_name();
-            swatch.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &name));
-            swatch.on_hover_text(name);
-        }
-        if self.unused.iter().any(|(_, lines)| !lines.is_empty()) {
-            ui.label(RichText::new("— unused").size(12.0).color(self.look.weak));
-        }
-        ui.spacing_mut().item_spacing.x = 6.0;
-    }
-
-    /// Across which direction the plane lies, as one choice.
-    fn directions(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let actions = [
-            ("X", Action::SectionX, Vector3::x()),
-            ("Y", Action::SectionY, Vector3::y()),
-            ("Z", Action::SectionZ, Vector3::z()),
-        ];
-        let lies = |axis: &Vector3| self.plane.normal.dot(axis).abs() > 1.0 - 1e-9;
-        let is_other = !actions.iter().any(|(_, _, axis)| lies(axis));
-        let mut labels = actions
-            .map(|(sign, _, axis)| (sign, lies(&axis), true))
-            .to_vec();
-        labels.push(("View", is_other, true));
-        if let Some(index) = segments(ui, &labels, CHOICE) {
-            let action = actions.get(index).map_or(Action::SectionView, |row| row.1);
-            commands.extend(action.command(self.state));
-        }
-    }
-
-    /// Flip and cut.
-    fn plane_buttons(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let flip = ui
-            .button("Flip")
-            .on_hover_text("Look at the plane from behind");
-        if flip.accessible_name("Flip the section plane").clicked() {
-            let section = SectionView {
-                plane: Some(Plane::new(self.plane.point, &-self.plane.normal)),
-                ..self.state.inspect.section
-            };
-            commands.push(InspectCommand::SetSection(section).into());
-        }
-        let is_clipped = self.state.inspect.section.is_clipped;
-        self.switch(ui, ("Cut", Action::ToggleSectionClip, is_clipped), commands);
-    }
-
-    /// A button with a sign that does an action.
-    fn switch(
-        &self,
-        ui: &mut Ui,
-        (sign, action, is_on): (&str, Action, bool),
-        commands: &mut Vec<Command>,
-    ) {
-        let row = action.row();
-        let response = ui.add(Button::new(sign).selected(is_on));
-        let name = format!("{} (section)", row.label);
-        let response = response.on_hover_text(row.tooltip).accessible_name(name);
-        if response.clicked() {
-            commands.extend(action.command(self.state));
-        }
-    }
-
-    /// How the outlines are shown.
-    fn zoom_buttons(&self, ui: &mut Ui, choices: &mut Choices) {
-        if matches!(choices.lie, Some(Lie::Apart(_))) {
-            for role in Role::ALL {
-                let button = ui.button(capital(role.word()));
-                let name = format!("Show the outline of the {} part", role.word());
-                if button.on_hover_text(&name).accessible_name(&name).clicked() {
-                    choices.zoom = Some(Zoom::Part(role));
-                }
-            }
-            return Self::all_button(ui, choices);
-        }
-        let button = Button::new("×10 gap").selected(choices.is_exaggerated);
-        let has_gaps = self.gaps.is_some() && choices.lie == Some(Lie::Together);
-        let response = ui.add_enabled(has_gaps, button);
-        let response = response.on_hover_text(
-            "Draw the stamped outline ten times as far from the crash outline as it is",
-        );
-        if response.clicked() {
-            choices.is_exaggerated ^= true;
-        }
-        let has_worst = self.gaps.is_some_and(|gaps| gaps.worst().is_some());
-        let worst = ui.add_enabled(has_worst, Button::new("Worst gap"));
-        if worst.on_hover_text("Zoom to the widest gap").clicked() {
-            choices.zoom = Some(Zoom::WorstGap);
-        }
-        Self::all_button(ui, choices);
-    }
-
-    fn all_button(ui: &mut Ui, choices: &mut Choices) {
-        if ui
-            .button("All")
-            .on_hover_text("Show the whole outlines")
-            .clicked()
-        {
-            choices.zoom = Some(Zoom::All);
-        }
     }
 
     /// The outlines with what is measured between them.
@@ -300,7 +190,10 @@ impl Drawing<'_> {
             .set_margin_fraction(vec2(0.06, 0.06))
             .show_crosshair(false)
             .label_formatter(|_| None);
-        let shown = with_coordinates(ui, plot, (width - AXIS, unit)).show(ui, |plot| {
+        let axes = self.plane.axes();
+        let [right, up] = axes.map(|axis| told_along(&axis));
+        let signs = [right.1, up.1];
+        let shown = with_coordinates(ui, plot, (width - AXIS, unit), signs).show(ui, |plot| {
             if is_new {
                 plot.set_auto_bounds(true);
             }
@@ -315,10 +208,9 @@ impl Drawing<'_> {
         });
         self.unused_lines(ui, &shown.transform);
         let response = shown.response;
-        let axes = self.plane.axes().map(|axis| direction_name(&axis));
-        self.axis_names(ui, response.rect, &axes);
+        self.axis_names(ui, response.rect, [right.0, up.0]);
         response.widget_info(|| {
-            let [right, up] = &axes;
+            let [right, up] = axes.map(|axis| direction_name(&axis));
             let name = format!("Outlines in the section plane, {right} to the right, {up} upwards");
             WidgetInfo::labeled(egui::Role::Canvas, true, name)
         });
@@ -328,8 +220,8 @@ impl Drawing<'_> {
         seen
     }
 
-    /// The directions of the axes at their ends, with the unit of the numbers along them.
-    fn axis_names(&self, ui: &Ui, plot: Rect, [right, up]: &[String; 2]) {
+    /// What is told along the axes at their ends, with the unit of the numbers.
+    fn axis_names(&self, ui: &Ui, plot: Rect, [right, up]: [String; 2]) {
         let unit = match self.state.document.unit_suffix().trim() {
             "" => String::new(),
             unit => format!(", {unit}"),
@@ -339,9 +231,9 @@ impl Drawing<'_> {
             ui.painter().text(at, align, text, font, self.look.text);
         };
         let at = plot.right_bottom() - vec2(4.0, 2.0);
-        text(at, Align2::RIGHT_BOTTOM, right);
+        text(at, Align2::RIGHT_BOTTOM, &right);
         let at = plot.left_top() + vec2(4.0, 2.0);
-        text(at, Align2::LEFT_TOP, up);
+        text(at, Align2::LEFT_TOP, &up);
     }
 
     /// The outlines in the axes of the plane, the crash part's first so that it lies below.

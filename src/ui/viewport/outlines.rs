@@ -89,6 +89,18 @@ pub(super) fn direction_name(direction: &Vector3) -> String {
     terms.collect()
 }
 
+/// What is told along an axis in a direction, and its sign: a coordinate itself, which falls where the direction is
+/// against it.
+pub(super) fn told_along(direction: &Vector3) -> (String, f64) {
+    let is_against = |part: &f64| *part < -1.0 + 1e-9;
+    let sign = if direction.iter().any(is_against) {
+        -1.0
+    } else {
+        1.0
+    };
+    (direction_name(&(direction * sign)), sign)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -110,6 +122,10 @@ mod tests {
         assert_eq!(direction_name(&-Vector3::x()), "−X");
         let between = Vector3::new(-0.6, 0.0, 0.8);
         assert_eq!(direction_name(&between), "−0.60 X + 0.80 Z");
+        // Along an axis the coordinate itself is told, also where it falls.
+        assert_eq!(told_along(&-Vector3::x()), ("X".to_owned(), -1.0));
+        assert_eq!(told_along(&Vector3::z()), ("Z".to_owned(), 1.0));
+        assert_eq!(told_along(&between), (direction_name(&between), 1.0));
     }
 
     #[test]
