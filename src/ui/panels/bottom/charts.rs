@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use egui::{Ui, Vec2};
-use egui_plot::{GridMark, Line, Plot, PlotPoints};
+use egui_plot::{GridInput, GridMark, Line, Plot, PlotPoints};
 
 use crate::text::{tick_number, trimmed};
 use crate::ui::theme::Palette;
@@ -41,23 +41,38 @@ pub fn log_chart(ui: &Ui, name: &str, size: Vec2) -> Plot<'static> {
     with_log_upright(still_chart(ui, name, size))
         .y_axis_label(name.to_owned())
         .y_axis_min_width(44.0)
-        .x_axis_formatter(|mark, _| decade_text(mark.value))
-        .x_grid_spacer(|input| decades(input.bounds))
+        .x_axis_formatter(|mark, range| mark_of_decades(mark.value, range))
+        .x_grid_spacer(|input| decades(&input, ACROSS))
 }
+
+/// Pixels between two lines of the finest grid that the library draws.
+const GRID: f64 = 8.0;
+/// Least pixels between two numbers upright and across.
+const UPRIGHT: f64 = 13.0;
+const ACROSS: f64 = 36.0;
+const DIGITS: [f64; 9] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0];
 
 /// The number whose logarithm this is: 0.01, 3, 20k. Two digits count.
 pub fn decade_text(log: f64) -> String {
+    log_text(log, 2)
+}
+
+/// The number at a mark of [`decades`], with the digits that tell it from the next one.
+fn mark_of_decades(log: f64, bounds: &RangeInclusive<f64>) -> String {
+    let width = (bounds.end() - bounds.start()).max(1e-9);
+    log_text(log, (1.5 - width.log10()).ceil().clamp(2.0, 8.0) as i32)
+}
+
+fn log_text(log: f64, n_digits: i32) -> String {
     let value = 10_f64.powf(log);
     let (value, unit) = if value >= 999.0 {
         (value / 1000.0, "k")
     } else {
         (value, "")
     };
-    let decimals = if value >= 9.95 {
-        0
-    } else {
-        (1 - value.log10().floor() as i32).clamp(0, 9) as usize
-    };
+    // Rounded up, 9.96 has its last digit before the point.
+    let first = (value.log10() + 0.0022).floor() as i32;
+    let decimals = (n_digits - 1 - first).clamp(0, 9) as usize;
     let text = format!("{value:.decimals$}");
     let text = if text.contains('.') {
         text.trim_end_matches('0').trim_end_matches('.')
@@ -69,8 +84,8 @@ pub fn decade_text(log: f64) -> String {
 
 /// A chart of logarithms upright, with the numbers themselves along the axis.
 pub fn with_log_upright(plot: Plot<'_>) -> Plot<'_> {
-    plot.y_axis_formatter(|mark, _| decade_text(mark.value))
-        .y_grid_spacer(|input| decades(input.bounds))
+    plot.y_axis_formatter(|mark, range| mark_of_decades(mark.value, range))
+        .y_grid_spacer(|input| decades(&input, UPRIGHT))
 }
 
 /// A chart of shares upright, with two to five round ones along the axis, but at most `most`.
@@ -102,26 +117,54 @@ fn round_shares((low, high): (f64, f64)) -> Vec<f64> {
     ticks.find(|ticks| ticks.len() >= 2).unwrap_or_default()
 }
 
-/// Grid of a logarithmic axis: decades, 2 and 5 between them where few decades are seen, and every digit where less
-/// than one is.
-fn decades((low, high): (f64, f64)) -> Vec<GridMark> {
+/// Grid of a logarithmic axis whose numbers are at least so many pixels apart.
+fn decades(input: &GridInput, apart: f64) -> Vec<GridMark> {
+    let (low, high) = input.bounds;
+    let has_way = high > low && (high - low).is_finite() && input.base_step_size > 0.0;
+    if !has_way {
+        return Vec::new();
+    }
+    let per_pixel = input.base_step_size / GRID;
+    let ticks = log_ticks((low, high), apart * per_pixel).into_iter();
+    // A mark is labelled when its step is wide on the screen.
+    let step_size = high - low;
+    ticks.map(|value| GridMark { value, step_size }).collect()
+}
+
+/// The logarithms of at least two round numbers that have room at this least distance: 2 and 5 between the decades
+/// where they have, else decades or some of them; every digit, or finer, where less than one decade is seen.
+fn log_ticks((low, high): (f64, f64), least: f64) -> Vec<f64> {
+    let is_seen = |value: &f64| (low..=high).contains(value);
     let (first, last) = (low.floor() as i32, high.ceil() as i32);
-    let marks = |factors: &[f64]| -> Vec<GridMark> {
+    let marks = |factors: &[f64]| -> Vec<f64> {
         let all = (first..=last)
             .flat_map(|decade| factors.iter().map(move |f| f64::from(decade) + f.log10()));
-        let seen = all.filter(|value| (low..=high).contains(value));
-        // A mark is labelled when its step is wide on the screen.
-        let step_size = 1.0;
-        seen.map(|value| GridMark { value, step_size }).collect()
+        all.filter(is_seen).collect()
     };
-    if last - first > 3 {
-        return marks(&[1.0]);
+    let ends = |ticks: &[f64]| match ticks {
+        [first, .., last] => vec![*first, *last],
+        _ => Vec::new(),
+    };
+    let n_decades = least.ceil().max(1.0) as i32;
+    let ticks = if least <= 2_f64.log10() {
+        marks(&[1.0, 2.0, 5.0])
+    } else {
+        let mut ticks = marks(&[1.0]);
+        ticks.retain(|value| (value.round() as i32) % n_decades == 0);
+        ticks
+    };
+    if ticks.len() >= 2 {
+        return ticks;
     }
-    let few = marks(&[1.0, 2.0, 5.0]);
-    if few.len() >= 2 {
-        return few;
+    for ticks in [marks(&[1.0]), marks(&[1.0, 2.0, 5.0]), marks(&DIGITS)] {
+        if ticks.len() >= 2 {
+            let is_tight = ticks.windows(2).any(|pair| pair[1] - pair[0] < least);
+            return if is_tight { ends(&ticks) } else { ticks };
+        }
     }
-    marks(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0])
+    let values = (10_f64.powf(low), 10_f64.powf(high));
+    let fine = round_ticks(values, 3).0.into_iter();
+    fine.map(f64::log10).filter(is_seen).collect()
 }
 
 /// Share of a narrow chart at either end where a number would reach beyond it, and least share between two.
@@ -382,6 +425,38 @@ mod tests {
         let read = [0.106, 0.3, 1.0, 0.0021].map(|high| share_text(round_below(high).unwrap()));
         assert_eq!(read, ["5\u{a0}%", "20\u{a0}%", "50\u{a0}%", "0.1\u{a0}%"]);
         assert_eq!(round_below(0.0), None);
+    }
+
+    #[test]
+    fn a_logarithmic_axis_has_two_numbers_that_have_room_at_least() {
+        for (low, high) in [
+            (-9.6, 1.8),
+            (-2.7, -2.4),
+            (-1.2, 2.0),
+            (0.31, 0.46),
+            (2.0, 2.001),
+            (-9.0, -8.0),
+        ] {
+            for pixels in [50.0, 70.0, 100.0, 400.0] {
+                let input = GridInput {
+                    bounds: (low, high),
+                    base_step_size: GRID * (high - low) / pixels,
+                };
+                let marks = decades(&input, UPRIGHT);
+                let range = low..=high;
+                let texts = marks.iter().map(|m| mark_of_decades(m.value, &range));
+                let texts: Vec<String> = texts.collect();
+                let case = format!("{low} {high} on {pixels}: {texts:?}");
+                assert!(marks.len() >= 2, "{case}");
+                assert!(marks.iter().all(|m| range.contains(&m.value)), "{case}");
+                assert!(texts.windows(2).all(|pair| pair[0] != pair[1]), "{case}");
+                // The library leaves out numbers of narrower steps.
+                assert!(marks.iter().all(|m| m.step_size * pixels / (high - low) > 30.0));
+                let per = pixels / (high - low);
+                let mut apart = marks.windows(2).map(|m| (m[1].value - m[0].value) * per);
+                assert!(apart.all(|pixels| pixels > UPRIGHT - 1e-6), "{case}");
+            }
+        }
     }
 
     #[test]

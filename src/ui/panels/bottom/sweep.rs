@@ -261,7 +261,7 @@ fn charts_ui(
     let width = (ui.available_width() - 8.0) / 2.0;
     let size = vec2(width, height);
     let clicked = chart_ui(ui, "time, ms", &times, size);
-    let clicked = clicked.or(chart_ui(ui, "error", &errors, size));
+    let clicked = clicked.or(chart_ui(ui, &state.lengths().axis("error"), &errors, size));
     let off = |row: &&MatchingRow, at: f64| (n(row).max(1.0).log10() - at).abs();
     let nearest = |at: f64| matched().min_by(|a, b| off(a, at).total_cmp(&off(b, at)));
     if let Some(row) = clicked.and_then(nearest) {
