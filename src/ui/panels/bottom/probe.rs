@@ -7,7 +7,7 @@ use super::charts;
 use super::mapping::{column_ui, look_at_element, number};
 use crate::app::{Action, AppState, ColorBy, Command, InspectCommand, MapCommand, ProbeReport};
 use crate::role::Role;
-use crate::text::grouped;
+use crate::text::{grouped, inside};
 use crate::ui::row_end::RowEnd;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{Look, action_button, caption, paragraph, percent};
@@ -189,6 +189,9 @@ fn values_ui(ui: &mut Ui, state: &AppState, probe: &ProbeReport, before: impl Fn
         });
 }
 
+/// Between the profile and the edge of the pane.
+const MARGIN: f32 = 16.0;
+
 /// Value over T: bottom −1, top +1; points are the layers.
 fn profile_ui(ui: &mut Ui, state: &AppState, probe: &ProbeReport, size: egui::Vec2) {
     let Some(by) = probe.profile_of else {
@@ -203,7 +206,11 @@ fn profile_ui(ui: &mut Ui, state: &AppState, probe: &ProbeReport, size: egui::Ve
     let values = stamped.iter().chain(&crash).map(|point| point[0]);
     let name = with_unit(state, by);
     let Some(range) = charts::margined(values) else {
-        caption(ui, format!("{name} through the thickness: no values"));
+        let text = format!("Neither part has {} here.", inside(by.label()));
+        ui.vertical(|ui| {
+            ui.set_max_width(size.x - MARGIN);
+            paragraph(ui, text);
+        });
         return;
     };
     ui.vertical(|ui| profile_plot(ui, &name, [stamped, crash], (range, size)));
@@ -218,9 +225,12 @@ fn profile_plot(
 ) {
     let palette = Palette::of(ui);
     let before = ui.cursor().top();
-    caption(ui, format!("{name} through the thickness"));
+    ui.set_max_width(size.x - MARGIN);
+    // In two lines it would take the room of the chart, and the pane would grow.
+    let title = RichText::new(format!("{name} through the thickness")).small();
+    ui.add(egui::Label::new(title.color(palette.secondary)).truncate());
     let size = vec2(
-        size.x - 16.0,
+        size.x - MARGIN,
         (size.y - (ui.cursor().top() - before)).max(40.0),
     );
     let plot = charts::still_chart(ui, "profile", size)
@@ -239,4 +249,76 @@ fn profile_plot(
         let points = Points::new("■ crash", crash).shape(MarkerShape::Square);
         plot.points(points.color(palette.crash).radius(3.5));
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::{Context, RawInput, Rect, Shape, pos2};
+
+    use super::*;
+    use crate::app::Settings;
+    use crate::geometry::Point3;
+    use crate::mapping::Status;
+    use crate::pipeline::map::Profile;
+
+    /// The texts of a profile at the right edge of a pane, and how far they reach.
+    fn painted(profile: &Profile) -> Vec<(String, f32)> {
+        let state = AppState::new(Settings::default());
+        let probe = ProbeReport {
+            element: 0,
+            id: 1,
+            center: Point3::origin(),
+            status: Status::ALL[0],
+            stamped_id: None,
+            stamped_file: None,
+            facts: [f64::NAN; 4],
+            values: Vec::new(),
+            profile_of: Some(ColorBy::PlasticStrain),
+            profile: profile.clone(),
+        };
+        let input = || RawInput {
+            screen_rect: Some(Rect::from_min_size(pos2(0.0, 0.0), vec2(400.0, 160.0))),
+            ..RawInput::default()
+        };
+        let ctx = Context::default();
+        let draw = |ui: &mut Ui| {
+            ui.horizontal_top(|ui| {
+                ui.allocate_space(vec2(250.0, 20.0));
+                let size = ui.available_size();
+                profile_ui(ui, &state, &probe, size);
+            });
+        };
+        ctx.run_ui(input(), draw).drop_without_applying_deltas();
+        let output = ctx.run_ui(input(), draw);
+        let texts = output
+            .shapes
+            .iter()
+            .filter_map(|clipped| match &clipped.shape {
+                Shape::Text(text) => {
+                    let right = text.pos.x + text.galley.rect.right();
+                    Some((text.galley.text().to_owned(), right))
+                }
+                _ => None,
+            });
+        let texts = texts.collect();
+        output.drop_without_applying_deltas();
+        texts
+    }
+
+    #[test]
+    fn a_profile_keeps_its_margin_and_says_what_is_missing() {
+        let points = vec![[-1.0, 0.1], [1.0, 0.2]];
+        let full = Profile {
+            stamped: points.clone(),
+            crash: points,
+        };
+        let [with, without] = [&full, &Profile::default()].map(painted);
+        let is_title = |(text, _): &&(String, f32)| text.ends_with("through the thickness");
+        assert_eq!(with.iter().filter(is_title).count(), 1, "{with:?}");
+        assert_eq!(without.len(), 1, "{without:?}");
+        assert_eq!(without[0].0, "Neither part has plastic strain here.");
+        for (text, right) in with.iter().chain(&without) {
+            assert!(*right <= 400.0 - MARGIN, "{text} to {right}");
+        }
+    }
 }
