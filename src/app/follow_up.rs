@@ -171,7 +171,7 @@ impl AppState {
                 self.parts.forget_missing(&self.document);
                 self.parts.refresh_likeness(&self.document);
                 self.follow_step(&before);
-                self.end_move_over_of_one();
+                self.leave_what_needs_parts();
                 // What was found at the marked place may be found there no more.
                 self.inspect.forget_place();
             }
@@ -256,17 +256,20 @@ impl AppState {
     /// one window, and the tab of a mapping.
     fn leave_empty_views(&mut self) {
         self.withdraw_about(&OF_PARTS);
-        self.end_move_over_of_one();
+        self.leave_what_needs_parts();
         if self.view.tab == BottomTab::Mapping && self.document.mapping.result.is_none() {
             self.view.tab = BottomTab::Log;
         }
     }
 
-    /// Without both parts the one that is left has its own window again.
-    fn end_move_over_of_one(&mut self) {
+    /// Without both parts the one that is left has its own window again; without any there is nothing to cut.
+    fn leave_what_needs_parts(&mut self) {
         let is_one = self.document.has_both_parts().is_err();
         if is_one && self.view.is_moved_over {
             self.with_scene(|view, scene| view.toggle_move_over(scene));
+        }
+        if self.view.tab == BottomTab::Section && self.document.has_any_part().is_err() {
+            self.view.tab = BottomTab::Log;
         }
     }
 

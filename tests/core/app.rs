@@ -2208,6 +2208,20 @@ fn after_moving_back_and_without_a_link_each_window_shows_its_own_part() {
 }
 
 #[test]
+fn without_any_part_there_is_no_section() {
+    let mut window = Window::new();
+    window.open("crash.k", Role::Crash);
+    window.act(Action::ToggleSection);
+    assert_eq!(window.state.view.tab, BottomTab::Section);
+    while window.state.history.undo_name().is_some() {
+        window.act(Action::Undo);
+    }
+    assert!(window.state.document.has_any_part().is_err());
+    assert!(!window.state.has_content(BottomTab::Section));
+    assert_eq!(window.state.view.tab, BottomTab::Log);
+}
+
+#[test]
 fn a_part_fills_the_room_that_is_free_again() {
     let mut window = Window::with_both();
     let role = Role::Crash;

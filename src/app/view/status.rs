@@ -162,7 +162,9 @@ impl AppState {
                     || self.jobs.is_active(JobKey::Match)
             }
             BottomTab::Sweep | BottomTab::Deviation => self.document.both().is_some(),
-            BottomTab::Section => self.inspect.section.shown().is_some(),
+            BottomTab::Section => {
+                self.inspect.section.shown().is_some() && self.document.has_any_part().is_ok()
+            }
             BottomTab::Mapping => self.document.current_mapping().is_some(),
             BottomTab::History => {
                 self.history.undo_name().is_some() || self.history.redo_name().is_some()
