@@ -691,3 +691,31 @@ fn a_window_without_a_part_says_nothing_of_the_colours_in_the_other() {
     assert!(!seen[0].is_empty());
     assert_eq!(seen[0], seen[1]);
 }
+
+/// The handles stand where the part is that they move.
+#[test]
+fn no_handles_lie_over_a_mapped_crash_part_alone() {
+    let mut window = matched();
+    let act = |window: &mut Harness<'static, Shell>, action: Action| {
+        let command = action.command(window.state().state()).expect("a command");
+        let ctx = window.ctx.clone();
+        window.state_mut().run_commands(vec![command], &ctx);
+        finish(window);
+        window.run_steps(4);
+    };
+    act(&mut window, Action::ToggleMoveOver);
+    if !window.state().state().moving.has_gizmo {
+        act(&mut window, Action::ToggleGizmo);
+    }
+    // The letters of the cube and of the buttons are smaller.
+    let n_letters = |window: &Harness<'static, Shell>| {
+        let letters = texts(window)
+            .into_iter()
+            .filter(|text| text.rect.height() > 15.0 && ["X", "Y", "Z"].contains(&&*text.text));
+        letters.count()
+    };
+    assert!(n_letters(&window) > 0);
+    act(&mut window, Action::MapOrCancel);
+    assert!(window.state().state().is_mapped_alone());
+    assert_eq!(n_letters(&window), 0);
+}

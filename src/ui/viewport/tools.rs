@@ -106,7 +106,8 @@ impl Tools {
         }
         // While points are picked, a click on a handle is meant for the part below it.
         let is_free = tool.is_none() && !frame.state.is_picking();
-        let is_wanted = frame.state.moving.has_gizmo && is_free && has_stamped(frame);
+        let is_drawn = has_stamped(frame) && !frame.state.is_mapped_alone();
+        let is_wanted = frame.state.moving.has_gizmo && is_free && is_drawn;
         let can_move = frame.state.can_move().is_ok() && !frame.state.is_preview();
         self.has_gizmo = is_wanted && (can_move || self.gizmo.is_dragging());
         if self.has_gizmo {

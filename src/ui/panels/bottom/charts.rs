@@ -141,9 +141,12 @@ fn log_ticks((low, high): (f64, f64), least: f64) -> Vec<f64> {
             .flat_map(|decade| factors.iter().map(move |f| f64::from(decade) + f.log10()));
         all.filter(is_seen).collect()
     };
-    let ends = |ticks: &[f64]| match ticks {
-        [first, .., last] => vec![*first, *last],
-        _ => Vec::new(),
+    // Those with room for all of them, else the ends.
+    let apart = |ticks: Vec<f64>| match ticks[..] {
+        [first, .., last] if ticks.windows(2).any(|pair| pair[1] - pair[0] < least) => {
+            vec![first, last]
+        }
+        _ => ticks,
     };
     let n_decades = least.ceil().max(1.0) as i32;
     let ticks = if least <= 2_f64.log10() {
@@ -158,13 +161,12 @@ fn log_ticks((low, high): (f64, f64), least: f64) -> Vec<f64> {
     }
     for ticks in [marks(&[1.0]), marks(&[1.0, 2.0, 5.0]), marks(&DIGITS)] {
         if ticks.len() >= 2 {
-            let is_tight = ticks.windows(2).any(|pair| pair[1] - pair[0] < least);
-            return if is_tight { ends(&ticks) } else { ticks };
+            return apart(ticks);
         }
     }
     let values = (10_f64.powf(low), 10_f64.powf(high));
     let fine = round_ticks(values, 3).0.into_iter();
-    fine.map(f64::log10).filter(is_seen).collect()
+    apart(fine.map(f64::log10).filter(is_seen).collect())
 }
 
 /// Share of a narrow chart at either end where a number would reach beyond it, and least share between two.
@@ -451,7 +453,11 @@ mod tests {
                 assert!(marks.iter().all(|m| range.contains(&m.value)), "{case}");
                 assert!(texts.windows(2).all(|pair| pair[0] != pair[1]), "{case}");
                 // The library leaves out numbers of narrower steps.
-                assert!(marks.iter().all(|m| m.step_size * pixels / (high - low) > 30.0));
+                assert!(
+                    marks
+                        .iter()
+                        .all(|m| m.step_size * pixels / (high - low) > 30.0)
+                );
                 let per = pixels / (high - low);
                 let mut apart = marks.windows(2).map(|m| (m[1].value - m[0].value) * per);
                 assert!(apart.all(|pixels| pixels > UPRIGHT - 1e-6), "{case}");
