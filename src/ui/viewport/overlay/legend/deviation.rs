@@ -16,6 +16,7 @@ use crate::ui::pictures::clickable;
 use crate::ui::row_end::RowEnd;
 use crate::ui::theme::{Palette, color};
 use crate::ui::typed::{Takes, told_field};
+use crate::ui::viewport::fields::FieldKind;
 use crate::ui::viewport::overlay::Overlay;
 use crate::ui::widgets::{length, paint_role_mark, percent};
 
@@ -118,11 +119,9 @@ pub(super) fn slim_freshness(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec
 
 /// Before the first measurement has ended.
 pub(super) fn waiting(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
-    ui.label(
-        RichText::new("Deviation")
-            .size(12.5)
-            .color(over.frame.look.text),
-    );
+    let name = over.kind.unwrap_or(FieldKind::Deviation).label();
+    let name = RichText::new(name).size(12.5);
+    ui.label(name.color(over.frame.look.text));
     freshness(ui, over, commands);
 }
 

@@ -48,7 +48,7 @@ const FULL_HEIGHT: f32 = 440.0;
 pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) -> Option<Rect> {
     let window = over.frame.rect();
     let has_room = top(over).is_some() && !is_narrow(over);
-    let Some((kind, scale)) = over.scale else {
+    let Some((kind, scale)) = over.scale.filter(|_| !is_awaited(over)) else {
         // The first measurement is under way.
         if has_room && over.kind.is_some_and(is_measured) {
             plate(ui, over, WIDTH, |ui| deviation::waiting(ui, over, commands));
@@ -102,6 +102,13 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
             bar::plain(ui, over, &title, &scale, room.bar, commands);
         }
     }))
+}
+
+/// True while the colours that have a legend are still being made.
+pub(super) fn is_awaited(over: &Overlay<'_>) -> bool {
+    let is_measured = over.frame.state.comparison().is_some();
+    over.kind
+        .is_some_and(|kind| over.scale.is_none() || kind == FieldKind::Overlap && !is_measured)
 }
 
 /// Draws what the classes of a picture are.

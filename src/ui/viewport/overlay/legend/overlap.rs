@@ -3,7 +3,7 @@
 use egui::{Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
 
 use super::{bar, deviation};
-use crate::app::Command;
+use crate::app::{Command, Freshness};
 use crate::assess::deviation::OverlapClass;
 use crate::colormap::{ColorMap, Pattern, UNMATCHED};
 use crate::role::Role;
@@ -35,7 +35,6 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
             }
         });
     });
-    deviation::freshness(ui, over, commands);
     ui.add_space(3.0);
     let limit = over.frame.state.lengths().of(comparison.deviation.limit);
     for (index, class) in OverlapClass::ALL.into_iter().enumerate() {
@@ -48,6 +47,10 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
         .size(11.0)
         .color(over.frame.look.weak),
     );
+    // At the foot, so that the rows stay where they are.
+    if over.frame.state.freshness() != Freshness::Current {
+        deviation::freshness(ui, over, commands);
+    }
 }
 
 fn row(
