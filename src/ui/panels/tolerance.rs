@@ -16,7 +16,7 @@ const TOLERANCE_HELP: &str = "Shape tolerance: how far the shapes may differ bes
 /// Air between the verdict and the name of the tolerance.
 const AIR: f32 = 6.0;
 
-/// What the tolerance is called where there is room: in a narrow column its name would touch the verdict.
+/// What the tolerance is called, as long as there is room: in a narrow column its name would touch the verdict.
 fn tolerance_name_ui(ui: &mut Ui, label: &str) {
     let font = egui::TextStyle::Small.resolve(ui.style());
     let fits = |name: &&str| {
@@ -26,7 +26,7 @@ fn tolerance_name_ui(ui: &mut Ui, label: &str) {
             .layout_no_wrap((*name).to_owned(), font.clone(), color);
         laid.size().x + AIR < ui.available_width()
     };
-    if let Some(name) = [label, "tolerance"].into_iter().find(fits) {
+    if let Some(name) = [label, "tolerance", "tol."].into_iter().find(fits) {
         let right = egui::Layout::right_to_left(egui::Align::Center);
         ui.with_layout(right, |ui| caption(ui, name));
     }
