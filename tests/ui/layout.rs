@@ -717,6 +717,67 @@ fn a_small_window_says_what_its_colours_mean_and_what_is_pointed_at() {
     }
 }
 
+/// Between the verdict and the tolerance there is little room where everything is large.
+#[test]
+fn the_tolerance_has_a_name_at_every_scale() {
+    let mut window = matched();
+    for scale in SCALES {
+        set(&mut window, Theme::Light, scale);
+        window.set_size(Vec2::new(1600.0, 1000.0) / scale);
+        act(&mut window, vec![ViewCommand::FoldColumn(false).into()]);
+        window.run_steps(4);
+        let names = ["Shape tolerance", "tolerance", "tol."];
+        let texts = texts(&window);
+        let is_name = |text: &&Painted| names.contains(&&*text.text);
+        assert!(texts.iter().any(|text| is_name(&text)), "{scale}");
+    }
+}
+
+/// The line at the foot of a window and what lies under the pointer.
+#[test]
+fn a_readout_keeps_off_the_line_at_the_foot() {
+    let mut window = matched();
+    window.set_size(Vec2::new(1280.0, 720.0));
+    let pin = PreviewCommand::Pin(Some(Preview::Start(0)));
+    act(&mut window, vec![pin.into()]);
+    finish(&mut window);
+    dismiss_toasts(&mut window);
+    assert!(window.query_by_label("Show the real pose").is_some());
+    let hovered = point_at_crash_part(&mut window, |rows| {
+        rows.iter()
+            .any(|row| row.contains("node\u{a0}"))
+            .then_some(())
+    });
+    assert!(hovered.is_some(), "nothing under the pointer");
+    let button = window.get_by_label("Show the real pose").rect();
+    for text in texts(&window) {
+        let is_readout = ["node", "element"]
+            .iter()
+            .any(|word| text.text.contains(word));
+        let is_over = is_readout && button.expand(4.0).intersects(text.rect);
+        assert!(!is_over, "{:?} {} on {button}", text.text, text.rect);
+    }
+    let found = faults(&window);
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+/// As the other legends.
+#[test]
+fn the_legend_of_the_overlap_speaks_of_its_age_only_when_it_is_old() {
+    let mut window = matched();
+    let action = Action::ToggleOverlap.command(window.state().state());
+    act(&mut window, action.into_iter().collect());
+    finish(&mut window);
+    let says = |window: &Window, words: &str| texts(window).iter().any(|t| t.text == words);
+    let begin = Instant::now();
+    while !says(&window, "shares of each part's area") {
+        assert!(begin.elapsed() < Duration::from_secs(120), "no legend");
+        std::thread::sleep(Duration::from_millis(10));
+        window.run_steps(1);
+    }
+    assert!(!says(&window, "up to date"));
+}
+
 /// Points at places across the middle of the crash part until something is found in the texts that are painted, each
 /// row of them one. What is drawn is worked out in the background.
 pub(super) fn point_at_crash_part<T>(

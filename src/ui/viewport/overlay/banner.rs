@@ -24,8 +24,8 @@ struct Banner {
     commands: Vec<Command>,
 }
 
-/// The banner, if there is something to say and room for it; returns how far it reaches up from the foot of the window.
-pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) -> Option<f32> {
+/// The banner, if there is something to say and room for it; returns where it lies.
+pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) -> Option<Rect> {
     if over.role() != Role::Crash {
         return None;
     }
@@ -64,7 +64,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     if clickable(ui, |ui| ui.put(area, button)).clicked() {
         commands.extend(banner.commands);
     }
-    Some(over.frame.rect().bottom() - ground.top())
+    Some(ground)
 }
 
 /// Where a banner of a size lies: in the middle, further right beside the cube, or above it; `None` where it has no

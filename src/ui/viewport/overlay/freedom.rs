@@ -131,8 +131,8 @@ fn draw_ring(
     head(painter, over, tip, tip - before);
 }
 
-/// The sentence, above the scale bar or the banner; returns how far it reaches up from the foot of the window.
-pub(super) fn sentence(ui: &Ui, over: &Overlay<'_>, banner: Option<f32>) -> Option<f32> {
+/// The sentence, above the scale bar or the banner; returns where it lies.
+pub(super) fn sentence(ui: &Ui, over: &Overlay<'_>, banner: Option<Rect>) -> Option<Rect> {
     let (motion, _) = shown(over)?;
     let window = over.frame.rect();
     let painter = over.painter(ui);
@@ -149,11 +149,13 @@ pub(super) fn sentence(ui: &Ui, over: &Overlay<'_>, banner: Option<f32>) -> Opti
         over.frame.look.text,
         room.clamp(NARROWEST, WIDEST),
     );
-    let foot = banner.map_or(banner::BOTTOM, |top| top + AIR);
+    let foot = banner.map_or(banner::BOTTOM, |banner| {
+        window.bottom() - banner.top() + AIR
+    });
     let size = galley.size() + vec2(16.0, 8.0);
     let center = window.center_bottom() - vec2(0.0, foot + 0.5 * size.y);
     let plate = Rect::from_center_size(center, size);
     painter.rect_filled(plate, CornerRadius::same(5), over.frame.look.plate);
     painter.galley(plate.min + vec2(8.0, 4.0), galley, over.frame.look.text);
-    Some(foot + size.y)
+    Some(plate)
 }

@@ -25,15 +25,15 @@ const LEAST_ROOM: f32 = 170.0;
 /// Longest scale bar.
 const MAX_BAR: f64 = 150.0;
 
-/// Scale bar, and a readout that keeps off the legend.
-pub(super) fn show(ui: &Ui, over: &Overlay<'_>, legend: Option<Rect>) {
+/// Scale bar, and a readout that keeps off the legend and off what is `said` at the foot of the window, from below.
+pub(super) fn show(ui: &Ui, over: &Overlay<'_>, legend: Option<Rect>, said: [Option<Rect>; 2]) {
     let painter = over.painter(ui);
     let display = &over.frame.state.view.display;
     let mut taken = over.frame.rect().left() + MARGIN;
     if display.has_scale_bar && !over.frame.picture.is_empty() {
         taken = bar(&painter, over);
     }
-    readout(&painter, over, taken, legend);
+    readout(&painter, over, taken, (legend, said));
 }
 
 /// Longest scale bar in this window.
@@ -120,25 +120,16 @@ fn length_text(length: f64) -> String {
 
 /// What lies under the cursor, bottom right, or above the scale bar where there is no room beside it; in
 /// several rows where one is too long.
-fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32, legend: Option<Rect>) {
+fn readout(
+    painter: &Painter,
+    over: &Overlay<'_>,
+    taken: f32,
+    (legend, said): (Option<Rect>, [Option<Rect>; 2]),
+) {
     let Some(hit) = over.hit else {
         return;
     };
-    let mut pieces: Vec<String> = value_text(over, hit).into_iter().collect();
-    let parts = hit
-        .part
-        .map(|part| (part, over.frame.state.document.part(part.role)));
-    if let Some((part, Some(of))) = parts
-        && of.facts.used.len() > 1
-    {
-        pieces.push(format!("part {}", part.id));
-    }
-    pieces.extend(file_name(over.frame.state, hit));
-    pieces.extend(hit.node_id.map(|id| format!("node {id}")));
-    let place = hit.node_id.map_or(&hit.point, |_| &hit.node);
-    let lengths = over.frame.state.lengths_of(hit.role);
-    pieces.push(lengths.place((*place).into()) + lengths.suffix());
-    pieces.extend(hit.element.map(|element| format!("element {element}")));
+    let pieces = pieces(over, hit);
     // A row ends between two pieces only.
     let whole = pieces
         .iter()
@@ -178,7 +169,13 @@ fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32, legend: Option<Rec
         if corner.x < taken + 6.0 {
             corner.y -= ABOVE_BAR + bar_lift(over);
         }
-        (galley, Rect::from_min_size(corner, size))
+        let mut ground = Rect::from_min_size(corner, size);
+        for said in said.into_iter().flatten() {
+            if ground.expand(4.0).intersects(said) {
+                ground = ground.translate(vec2(0.0, said.top() - 6.0 - ground.bottom()));
+            }
+        }
+        (galley, ground)
     };
     let (mut galley, mut ground) = within(window.right());
     let is_right = |legend: &Rect| legend.left() > window.center().x;
@@ -195,6 +192,26 @@ fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32, legend: Option<Rec
     }
     painter.rect_filled(ground, CornerRadius::same(5), over.frame.look.plate);
     painter.galley(ground.min + vec2(7.0, 4.0), galley, over.frame.look.text);
+}
+
+/// What is said of a place, piece by piece.
+fn pieces(over: &Overlay<'_>, hit: &Hit) -> Vec<String> {
+    let mut pieces: Vec<String> = value_text(over, hit).into_iter().collect();
+    let parts = hit
+        .part
+        .map(|part| (part, over.frame.state.document.part(part.role)));
+    if let Some((part, Some(of))) = parts
+        && of.facts.used.len() > 1
+    {
+        pieces.push(format!("part {}", part.id));
+    }
+    pieces.extend(file_name(over.frame.state, hit));
+    pieces.extend(hit.node_id.map(|id| format!("node {id}")));
+    let place = hit.node_id.map_or(&hit.point, |_| &hit.node);
+    let lengths = over.frame.state.lengths_of(hit.role);
+    pieces.push(lengths.place((*place).into()) + lengths.suffix());
+    pieces.extend(hit.element.map(|element| format!("element {element}")));
+    pieces
 }
 
 /// The stamped file under the cursor, where there are several.

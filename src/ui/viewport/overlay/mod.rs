@@ -89,12 +89,12 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     let taken = labels::show(ui, over, commands);
     distance::show(ui, over, &taken);
     let legend = legend::show(ui, over, commands);
-    marks::show(ui, over, legend);
+    let banner = banner::show(ui, over, commands);
+    let sentence = freedom::sentence(ui, over, banner);
+    marks::show(ui, over, legend, [banner, sentence]);
     cube::show(ui, over, commands);
     header::show(ui, over);
     clickable(ui, |ui| header::buttons(ui, over, commands));
-    let banner = banner::show(ui, over, commands);
-    let sentence = freedom::sentence(ui, over, banner);
     free::show(ui, over, commands);
     room::tell(over, legend, sentence.or(banner), commands);
 }

@@ -14,12 +14,12 @@ const NEAR_EDGE: f32 = 24.0;
 /// Air between a part and what lies over the window.
 const AIR: f32 = 4.0;
 
-/// Tells the state the shape of the window and what covers it, if that changed. `foot` is how far what lies above
-/// the scale bar reaches up.
+/// Tells the state the shape of the window and what covers it, if that changed. `foot` is what lies above the scale
+/// bar.
 pub(super) fn tell(
     over: &Overlay<'_>,
     legend: Option<Rect>,
-    foot: Option<f32>,
+    foot: Option<Rect>,
     commands: &mut Vec<Command>,
 ) {
     let room = ViewRoom {
@@ -32,9 +32,10 @@ pub(super) fn tell(
     }
 }
 
-fn covered(over: &Overlay<'_>, legend: Option<Rect>, foot: Option<f32>) -> Covered {
+fn covered(over: &Overlay<'_>, legend: Option<Rect>, foot: Option<Rect>) -> Covered {
     let window = over.frame.rect();
     let head = header::height(over).unwrap_or(free::BELOW_CHOICE);
+    let foot = foot.map(|foot| window.bottom() - foot.top());
     let foot = foot.unwrap_or(MARGIN + SCALE_BAR + marks::bar_lift(over));
     let corner = if cube::is_shown(over) {
         let [width, height] = [MARGIN + cube::SIZE; 2];
@@ -50,17 +51,12 @@ fn covered(over: &Overlay<'_>, legend: Option<Rect>, foot: Option<f32>) -> Cover
     };
     if let Some(legend) = legend {
         cover(&mut covered, legend, window);
-    } else if is_legend_awaited(over) {
+    } else if legend::is_awaited(over) && over.frame.picture.has_colored() {
         // The picture does not grow and shrink while the next map is worked out.
         let last = over.frame.state.view.rooms.get(over.role()).covered;
         (covered.beside, covered.above) = (last.beside, last.above);
     }
     covered
-}
-
-/// True while the colours that have a legend are still being made.
-fn is_legend_awaited(over: &Overlay<'_>) -> bool {
-    over.kind.is_some() && over.scale.is_none() && over.frame.picture.has_colored()
 }
 
 /// Adds what a legend covers, where it lies at an edge.
