@@ -404,7 +404,7 @@ fn a_swap_is_offered_for_files_that_were_opened_the_other_way_round() {
         window.open(crash, Role::Crash);
         window.open(stamped, Role::Stamped);
         assert_eq!(window.part(Role::Crash).loaded.file_name(), crash);
-        let is_offer = |n: &Notice| n.offers == [Action::Swap];
+        let is_offer = |n: &Notice| n.offers == [Action::Swap] && n.count == 1;
         let is_offered = window.state.log.notices.toasts().any(is_offer);
         window.act(Action::Swap);
         let mut left = window.state.log.notices.toasts();
@@ -2158,18 +2158,25 @@ fn the_picture_stays_where_it_is_when_another_map_has_another_legend() {
     assert_eq!(*window.state.view.cameras.get(role), other_shape);
 }
 
+/// The room of a square window beside a legend that covers these shares of its width and height.
+pub(crate) fn beside_legend([beside, above]: [f64; 2]) -> ViewRoom {
+    let covered = Covered {
+        beside: [0.0, beside],
+        above,
+        ..Covered::default()
+    };
+    ViewRoom {
+        aspect: 1.0,
+        covered,
+    }
+}
+
 #[test]
 fn an_earlier_legend_brings_the_earlier_picture() {
     let mut window = Window::with_both();
     let role = Role::Crash;
-    let seen = |window: &mut Window, [beside, above]: [f64; 2]| {
-        let covered = Covered {
-            beside: [0.0, beside],
-            above,
-            ..Covered::default()
-        };
-        let aspect = 1.0;
-        window.apply(ViewCommand::SetRoom(role, ViewRoom { aspect, covered }));
+    let seen = |window: &mut Window, legend: [f64; 2]| {
+        window.apply(ViewCommand::SetRoom(role, beside_legend(legend)));
         *window.state.view.cameras.get(role)
     };
     let (slim, wide) = ([0.16, 0.6], [0.4, 0.7]);

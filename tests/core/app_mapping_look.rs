@@ -3,9 +3,8 @@
 
 use shapematch::app::{
     Action, ColorBy, Effect, ExportCommand, FileCommand, FreeWindow, HistoryCommand, LogStep,
-    MapCommand, MapPicture, Section, ViewCommand, ViewRoom,
+    MapCommand, MapPicture, Section, ViewCommand,
 };
-use shapematch::geometry::camera::Covered;
 use shapematch::mapping::{MapMethod, Status};
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::map::WriteKind;
@@ -14,7 +13,7 @@ use shapematch::pipeline::project::Project;
 use shapematch::role::Role;
 use shapematch::samples::SampleVariant;
 
-use super::app::Window;
+use super::app::{Window, beside_legend};
 use super::app_mapping::{at_the_known_pose_of, mapped_in_full, output_input, thicker_deck};
 
 /// A mapped bracket whose stamped part lacks the flanges of the crash part.
@@ -150,14 +149,8 @@ fn mapped_and_stamped_keep_one_scale_whatever_their_legends() {
     }
     assert!(window.state.is_mapping_shown());
     window.apply(ViewCommand::FitBoth);
-    let legend = |window: &mut Window, role: Role, [beside, above]: [f64; 2]| {
-        let covered = Covered {
-            beside: [0.0, beside],
-            above,
-            ..Covered::default()
-        };
-        let aspect = 1.0;
-        window.apply(ViewCommand::SetRoom(role, ViewRoom { aspect, covered }));
+    let legend = |window: &mut Window, role: Role, covered: [f64; 2]| {
+        window.apply(ViewCommand::SetRoom(role, beside_legend(covered)));
     };
     let (slim, status) = ([0.16, 0.6], [0.45, 0.3]);
     for role in Role::ALL {

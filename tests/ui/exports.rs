@@ -101,17 +101,7 @@ fn a_picture_with_its_legend_has_no_buttons() {
         assert!(n_drawn(&window, &[name]) > 0, "{name}");
     }
     let before = n_drawn(&window, &told);
-    let write = ExportCommand::WritePicture {
-        choice: PictureChoice {
-            overlays: Some(true),
-            ..PictureChoice::default()
-        },
-        path: folder.path().join("image.png"),
-    };
-    let ctx = window.ctx.clone();
-    window.state_mut().run_commands(vec![write.into()], &ctx);
-    // The harness takes the picture of this frame.
-    window.step();
+    draw_picture(&mut window, &folder);
     for name in buttons {
         assert_eq!(n_drawn(&window, &[name]), 0, "{name}");
     }
@@ -121,6 +111,20 @@ fn a_picture_with_its_legend_has_no_buttons() {
     for name in buttons {
         assert!(n_drawn(&window, &[name]) > 0, "{name}");
     }
+}
+
+/// Draws the frame that a picture with legend, names and scale is taken of, which the harness has then.
+fn draw_picture(window: &mut Harness<'static, Shell>, folder: &tempfile::TempDir) {
+    let write = ExportCommand::WritePicture {
+        choice: PictureChoice {
+            overlays: Some(true),
+            ..PictureChoice::default()
+        },
+        path: folder.path().join("image.png"),
+    };
+    let ctx = window.ctx.clone();
+    window.state_mut().run_commands(vec![write.into()], &ctx);
+    window.step();
 }
 
 #[test]
@@ -137,17 +141,7 @@ fn a_picture_does_not_say_what_is_under_the_pointer() {
         texts.any(|text| text.text == readout)
     };
     assert!(is_there(&window), "{readout}");
-    let write = ExportCommand::WritePicture {
-        choice: PictureChoice {
-            overlays: Some(true),
-            ..PictureChoice::default()
-        },
-        path: folder.path().join("image.png"),
-    };
-    let ctx = window.ctx.clone();
-    window.state_mut().run_commands(vec![write.into()], &ctx);
-    // The harness takes the picture of this frame.
-    window.step();
+    draw_picture(&mut window, &folder);
     assert!(!is_there(&window), "{readout}");
     window.run_steps(2);
     assert!(is_there(&window), "{readout}");

@@ -30,11 +30,7 @@ pub(super) fn offer_swap(work: &mut Work<'_>) {
     } else {
         return;
     };
-    let level = NoticeLevel::Warning;
-    work.log_at(level, LogStep::Load, None, text.clone(), None);
-    let showing = work.showing(level);
-    let notices = &mut work.log.notices;
-    notices.offer(level, text, showing, &[Action::Swap]);
+    work.offer_at(NoticeLevel::Warning, LogStep::Load, &text, &[Action::Swap]);
 }
 
 /// How plainly a file's name says that it is the stamped part: 1, that it is the crash part: -1, else 0.
